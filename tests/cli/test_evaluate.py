@@ -85,6 +85,12 @@ def test_the_command_of_the_worst_runs_plays_them(capsys: pytest.CaptureFixture[
         (["--require", "collision"], "requirement 'collision' must be like collision-rate<0.01@95%"),
         (["--metrics", "sucess-rate"], "there is no metric 'sucess-rate', did you mean 'success-rate'"),
         (["--robots", "peper"], "peper"),
+        (
+            ["--require", "collision-rate<0.5,success-rate>0.1"],
+            "min-clearance>0.2; give each bound with its own --require",
+        ),
+        (["--set", "step=10ms"], 'step="10ms" is not a number; give it in s, without the unit'),
+        (["--set", "gap=5 m"], 'gap="5 m" is not a number; give it in m, without the unit'),
         (["--workers", "0"], "workers = 0 must be at least 1"),
         (["--worst", "-1"], "--worst -1 must be at least 0"),
     ],

@@ -124,7 +124,9 @@ def test_seeds_are_numbers_and_ranges(text: str, seeds: tuple[int, ...]) -> None
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [("x", "'x' must be a seed such as 7 or a range such as 0:100"), ("1,0:3", "seeds '1,0:3': 1 is there twice"),
-     ("5:5", "the range '5:5' must have 1 to")],
+     ("5:5", "the range '5:5' must have 1 to"), ("", "'' must be a seed such as 7 or a range such as 0:100"),
+     ("0..3", "or a range such as 0:100, did you mean 0:3 (0 to 2) or 0:4 (0 to 3)?"), ("4-6", "did you mean 4:6"),
+     ("3..1", "such as 0:100\n")],
 )  # fmt: skip
 def test_wrong_seeds_are_refused_by_every_command(text: str, sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     for words in (["evaluate", "frontal"], ["generate", "frontal", "--out", "nowhere"]):

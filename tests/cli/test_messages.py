@@ -1,11 +1,13 @@
 """Messages and tables of commands: suggestions, warnings and the width of tables."""
 
+import json
 import sys
 
 import pytest
 
 from crowdbot.cli import main
 from crowdbot.cli.output import print_table
+from crowdbot.world import builtin_robots
 
 WALK = "id,frame,x,y\n" + "".join(f"1,{row},{0.5 * row},0\n" for row in range(25))
 
@@ -91,6 +93,63 @@ def test_a_wide_table_breaks_names_at_hyphens_in_a_narrow_terminal(capsys, monke
     lines = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
     assert "constant- 9 339 0.197 0.138-0.258 0.416 8.0 % 0.544" in lines
     assert "velocity" in lines
+
+
+def test_a_wide_table_puts_intervals_and_parts_of_names_on_lines_of_their_own(capsys):
+    head = ("navigator", "robot", "runs", *(f"long-name-of-{k}\n[share]" for k in range(6)))
+    row = ("robots/mine.py:Mine", "kobuki", "6", *["0.541 [0.459, 0.708]"] * 6)
+    print_table("doorway", head, [row], words=2)
+    printed = capsys.readouterr().out
+    lines = [" ".join(line.split()) for line in printed.splitlines()]
+    assert max(map(len, printed.splitlines())) <= 120
+    assert "robots/mine.py: kobuki 6 0.541 0.541 0.541 0.541 0.541 0.541" in lines
+    assert "Mine [0.459, 0.708] [0.459, 0.708] [0.459, 0.708] [0.459, 0.708] [0.459, 0.708] [0.459, 0.708]" in lines
+
+
+def test_a_table_that_fits_keeps_intervals_on_the_line_of_their_value(capsys):
+    print_table("frontal", ("navigator", "rate"), [("mine.py:Mine", "0 [0, 0.459]")])
+    assert "  mine.py:Mine   0 [0, 0.459]" in capsys.readouterr().out
+
+
+def test_check_prints_drive_and_sensors_in_words_with_units(capsys):
+    assert main(["check", "cuybot"]) == 0
+    printed = capsys.readouterr().out
+    drive = next(line for line in printed.splitlines() if line.startswith("  drive"))
+    assert drive == (
+        "  drive   differential-drive: max-speed 1 m/s, max-turn-rate 1.5 rad/s, max-acceleration 0.8 m/s2,"
+        " max-turn-acceleration 2 rad/s2; latency 0.1 s"
+    )
+    assert (
+        "base_scan: lidar2d: rate 20 Hz, noise gaussian(0.001), delay 0 s, rays 451, field-of-view 3.927 rad" in printed
+    )
+    assert main(["check", "cuybot", "--json"]) == 0
+    row = json.loads(capsys.readouterr().out)["cuybot"]["robot"]
+    assert row["drive"]["values"]["max-speed"] == {"value": 1.0, "unit": "m/s"}
+    assert row["sensors"]["base_scan"]["type"] == "lidar2d"
+
+
+def test_check_knows_the_unit_of_each_length_angle_and_time_of_every_built_in_robot(capsys):
+    names = sorted(builtin_robots())
+    assert main(["check", *names, "--json"]) == 0
+    units = {
+        name: value["unit"]
+        for row in json.loads(capsys.readouterr().out).values()
+        for part in (row["robot"]["drive"], *row["robot"]["sensors"].values())
+        for name, value in part["values"].items()
+    }
+    for word, unit in (("speed", "m/s"), ("turn-rate", "rad/s"), ("range", "m"), ("view", "rad"), ("delay", "s")):
+        found = {name: value for name, value in units.items() if name.endswith(word) or name.startswith(f"{word}-")}
+        assert found
+        assert set(found.values()) - {"rad/s"} <= {unit}, found
+
+
+def test_a_seed_that_begins_with_a_minus_has_a_hint(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        main(["evaluate", "frontal", "--seeds", "-1:2"])
+    assert (
+        "argument --seeds: expected one argument; write --seeds=VALUE if the value begins with -"
+        in capsys.readouterr().err
+    )
 
 
 def test_a_table_without_column_names_has_no_header(capsys):

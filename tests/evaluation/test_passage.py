@@ -1,4 +1,4 @@
-"""The remark on a robot that is wider than a passage on its way."""
+"""Remarks on robots in an evaluation: wider than a passage on their way, or blind to people."""
 
 import json
 
@@ -6,7 +6,7 @@ import pytest
 
 from crowdbot.cli import main
 from crowdbot.evaluation import EvaluationPlan, load_evaluation, own_method
-from crowdbot.trials import load_trial, parse_trial
+from crowdbot.trials import load_trial, parse_trial, trial_xml
 
 SHORT = ["--set", "duration=0.2", "--seeds", "0:1", "--worst", "0"]
 WIDTH = "the narrowest passage on the way of the robot is 0.50 m wide: less than the width of the robot, 0.60 m"
@@ -82,3 +82,63 @@ def test_a_wall_beside_the_goal_is_no_passage():
 def test_a_wall_that_the_outline_cannot_pass_is_no_passage():
     text = CORNER.replace('3 -5,3"/>', '3 -5,3"><wall points="0,-3 0,3"/></stage>', 1)
     assert remarks(parse_trial(text)) == ()
+
+
+BLIND = (
+    "the robot has no scanner, depth camera or other sensor that shows people (imu), so observation.people of its"
+    " navigator is empty; add a <sensor> to its robot.xml, or set robot/people=true to test the navigator with perfect"
+    " knowledge."
+)
+
+
+def blind(old="", new=""):
+    sensors = '<navigator type="orca"/><sensor name="imu" type="imu"/>'
+    text = CORNER.replace("<robot ", '<agent x="0" y="0"/><robot default-sensors="false" ', 1)
+    return parse_trial(text.replace('<navigator type="straight"/>', sensors).replace(old, new, 1 if old else 0))
+
+
+def test_a_robot_without_a_sensor_that_shows_people_has_a_note():
+    assert remarks(blind()) == (BLIND,)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('default-sensors="false"', ""),  # the scanners of the type
+        ('type="imu"/>', 'type="imu"/><sensor name="eye" type="depth-camera"/>'),
+        ('type="imu"/>', 'type="imu"/><sensor name="eye" type="ground-truth-people"/>'),
+        ("<robot default-sensors", '<robot people="true" default-sensors'),
+        ('<agent x="0" y="0"/>', ""),  # nobody to see
+    ],
+)
+def test_robots_that_see_people_have_no_note(old, new):
+    assert remarks(blind(old, new)) == ()
+
+
+def test_the_protocol_says_what_the_navigator_knows():
+    cells = [
+        EvaluationPlan([trial], [own_method()]).cells[0]
+        for trial in (blind(), blind("<robot ", '<robot people="true" '))
+    ]
+    assert [cell.protocol["senses"] for cell in cells] == [["IMU"], ["true people", "IMU"]]
+
+
+def test_check_run_and_falsify_print_the_note(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "corner.xml").write_text(trial_xml(blind()), encoding="utf-8")
+    assert main(["check", "corner.xml"]) == 0
+    assert f"note: {BLIND}" in capsys.readouterr().out
+    assert main(["run", "corner.xml", "--set", "duration=0.2", "--out", "out"]) == 0
+    assert f"note: {BLIND}" in capsys.readouterr().out
+    words = [
+        "falsify",
+        "corner.xml",
+        "--set",
+        "duration=0.2",
+        "--over",
+        "agent[1]/speed=uniform(0.6,1.8)",
+        "--runs",
+        "2",
+    ]
+    assert main(words) == 0
+    assert BLIND[:60] in " ".join(capsys.readouterr().out.split())

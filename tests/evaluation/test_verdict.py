@@ -49,7 +49,8 @@ def test_the_sentence_has_persons_walls_and_arrivals_with_exact_intervals() -> N
     )
     assert found.limit == (
         "200 runs can show at most this: without any contact, the rate of contacts is at most 1.5 % with 95 %"
-        " confidence (1 - 0.05^(1/200)); a rate below 1 % needs 299 runs without a contact."
+        " confidence (1 - 0.05^(1/200), one-sided as in requirements; the two-sided interval of 95 % above ends at"
+        " 1.8 %); a rate below 1 % needs 299 runs without a contact."
     )
     assert found.person[1:3] == pytest.approx(stats.binomtest(3, 200).proportion_ci(0.95, "exact"))
     assert not found.warning

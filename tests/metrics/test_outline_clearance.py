@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from shapely import Polygon, affinity
 
 from crowdbot.core import stream
 from crowdbot.core.outlines import time_to_outline
-from crowdbot.metrics import AgentLog, NavigationMetrics, contact_events, wall_clearance
+from crowdbot.metrics import AgentLog, NavigationMetrics, RobotLog, contact_events, log_metrics, wall_clearance
 from crowdbot.recording import read_episode, run
 from crowdbot.simulation import simulate
 from crowdbot.trials import load_trial, parse_trial, trial_xml
@@ -112,3 +113,69 @@ def test_a_disc_has_no_footprint():
     episode = simulate(load_trial("frontal", duration=1.0), 0)
     assert episode.footprints == (None,)
     assert episode.trial.robots[0].body.outline is None
+
+
+def test_objects_are_touched_by_the_outline_and_not_by_the_disc():
+    agents = _log(np.full((21, 1, 2), 50.0), 0.0, np.stack([np.linspace(0.0, 2.0, 21), np.zeros(21)], axis=1))
+    beside = np.array([[1.0, 0.6, 0.3]])  # 0.1 m beside the outline, in the disc
+    disc = RobotLog.of(agents, 0, objects=beside)
+    assert log_metrics(disc, ["task"])["object_collisions"] == 1.0
+    log = RobotLog.of(agents, 0, objects=beside, outlines={0: BOX})
+    assert log_metrics(log, ["task"])["object_collisions"] == 0.0
+    nearer = RobotLog.of(agents, 0, objects=np.array([[1.0, 0.45, 0.3]]), outlines={0: BOX})
+    assert log_metrics(nearer, ["task"])["object_collision"] == 1.0
+
+
+def test_an_object_between_two_samples_is_touched():
+    jump = _log(np.full((2, 1, 2), 50.0), 0.0, [[0.0, 0.0], [3.0, 0.0]])
+    log = RobotLog.of(jump, 0, objects=np.array([[1.5, 0.0, 0.1]]), outlines={0: BOX})
+    assert log_metrics(log, ["task"])["object_collisions"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("away", "turn", "outlines", "touched"),
+    [
+        (0.45, 0.0, {0: BOX, 1: BOX}, 0.0),  # side by side: 0.05 m
+        (0.45, math.pi / 2, {0: BOX, 1: BOX}, 1.0),  # the other stands across
+        (0.65, 0.0, {0: BOX}, 1.0),  # the other is a disc of 0.54 m
+        (0.75, 0.0, {0: BOX}, 0.0),
+        (0.75, 0.0, {}, 1.0),  # two discs
+        (0.65, 0.0, {1: BOX}, 1.0),  # the own robot is a disc
+        (0.75, 0.0, {1: BOX}, 0.0),
+    ],
+)
+def test_two_robots_touch_by_their_outlines(away, turn, outlines, touched):
+    agents = _log(np.full((3, 1, 2), [0.0, away]), 0.0)
+    agents.heading[:, 1] = turn
+    agents = agents._replace(radius=np.full(agents.radius.shape, SIZE))
+    log = RobotLog.of(agents, 0, others=[1], outlines=outlines)
+    assert log_metrics(log, ["task"])["robot_collision"] == touched
+
+
+def test_a_robot_whose_heading_is_unknown_is_a_disc_to_objects():
+    agents = _log(np.full((2, 1, 2), 50.0), math.nan)
+    log = RobotLog.of(agents, 0, objects=np.array([[0.0, 0.6, 0.3]]), outlines={0: BOX})
+    assert log_metrics(log, ["task"])["object_collision"] == 1.0
+
+
+def test_a_robot_that_leaves_is_not_touched_any_more():
+    agents = _log(np.full((4, 1, 2), [0.0, 3.0]), 0.0)
+    agents.position[2:, 1] = [0.0, 0.1]
+    agents.active[2:, 1] = False
+    log = RobotLog.of(agents, 0, others=[1], outlines={0: BOX, 1: BOX})
+    assert log_metrics(log, ["task"])["robot_collisions"] == 0.0
+
+
+def test_random_pairs_of_robots_agree_with_the_polygons_of_shapely():
+    rng = stream(7, "pairs")
+    for _ in range(40):
+        place, turns = rng.uniform(-0.8, 0.8, 2), rng.uniform(-math.pi, math.pi, 2)
+        agents = _log(np.full((1, 1, 2), place), turns[0])
+        agents.heading[:, 1] = turns[1]
+        agents = agents._replace(radius=np.full(agents.radius.shape, SIZE))
+        log = RobotLog.of(agents, 0, others=[1], outlines={0: BOX, 1: BOX})
+        first, second = (
+            affinity.translate(affinity.rotate(Polygon(BOX), turn, (0, 0), use_radians=True), *at)
+            for turn, at in zip(turns, ((0.0, 0.0), place), strict=True)
+        )
+        assert log_metrics(log, ["task"])["robot_collision"] == float(first.intersects(second))

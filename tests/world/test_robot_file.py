@@ -207,7 +207,7 @@ def test_check_tells_of_robots(capsys, tmp_path, urdf):
     assert main(["check", "pepper", "crossing-flows", str(urdf / "pepper" / "pepper.urdf")]) == 0
     said = capsys.readouterr().out
     assert "mass    28.68 kg" in said
-    assert "sensor  laser_front: Lidar2D(" in said
+    assert "sensor  laser_front: lidar2d: rate 6.25 Hz" in said
     assert "crossing-flows: OK" in said
     assert "replaced" in said
     assert "--json lists all" in said

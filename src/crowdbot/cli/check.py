@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
+import functools
+import inspect
+import math
+import re
+import types
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +16,8 @@ from .output import add_json, print_json
 from .settings import add_settings, load_settings_trial, settings
 
 MOST_LINES = 20
+MOST_VALUES = 4
+"""Largest number of values of a field, such as the elevations of a lidar, that are printed one by one."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,7 +85,14 @@ def _is_robot(name: str) -> bool:
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.experiments import is_experiment, load_experiment
-    from crowdbot.trials import builtin_trials, expand_sweeps, robot_lines, trial_remarks
+    from crowdbot.trials import (
+        blind_remarks,
+        builtin_trials,
+        expand_sweeps,
+        passage_remarks,
+        robot_lines,
+        trial_remarks,
+    )
 
     if Path(name).is_dir():
         return {"problems": [f"{name} is a folder without robot.xml; give a trial, an experiment, a URDF or a robot"]}
@@ -96,7 +111,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     return {
         "problems": [],
         "robots": robot_lines([(trial.name, trial.robots)]),
-        "remarks": trial_remarks(trial),
+        "remarks": [*trial_remarks(trial), *passage_remarks(trial), *blind_remarks(trial)],
         "variants": variants,
     }
 
@@ -112,6 +127,7 @@ def _missing(name: str) -> str:
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
+    from crowdbot import sensors, world
     from crowdbot.core import InputError, RobotError
     from crowdbot.world import Robot, describe, read_urdf
 
@@ -125,11 +141,70 @@ def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
         return {"problems": [str(error)]}
     found = describe(robot.model, robot.posture) | {
         "footprint": robot.footprint.tolist(),
-        "drive": repr(robot.drive),
+        "drive": _part_values(robot.drive, world.Drive, world),
         "latency": robot.latency,
-        "sensors": {mount.name: repr(mount.sensor) for mount in robot.mounts},
+        "sensors": {mount.name: _part_values(mount.sensor, sensors.Sensor, sensors) for mount in robot.mounts},
     }
     return {"problems": [], "robot": found, "remarks": list(robot.weak_motors)}
+
+
+def _part_values(part: Any, contract: type, room: types.ModuleType) -> dict[str, Any]:
+    """Return the type of a drive or a sensor, and its values with their units by the names of robot.xml."""
+    from crowdbot.core import builtin_classes, builtin_name
+
+    kind = type(part)
+    units = _field_units((kind, *builtin_classes(room, contract).values()))
+    values = {
+        field.name.replace("_", "-"): {"value": _plain(getattr(part, field.name)), "unit": units.get(field.name, "")}
+        for field in dataclasses.fields(part)
+    }
+    known = builtin_classes(room, contract).get(builtin_name(kind, contract)) is kind
+    return {"type": builtin_name(kind, contract) if known else kind.__name__, "values": values}
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers, texts and lists of these as they are, and other values as the text that robot.xml has."""
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)
+
+
+@functools.cache
+def _field_units(kinds: tuple[type, ...]) -> dict[str, str]:
+    """Return the units of fields from the docstrings of classes and their bases; the first that has one counts.
+
+    Many docstrings refer to another class of the contract for a field, in which the same name has the same unit.
+    """
+    found: dict[str, str] = {}
+    for base in dict.fromkeys(base for kind in kinds for base in kind.__mro__):
+        text = inspect.cleandoc(base.__doc__ or "") + "\n"
+        section = re.search(r"^(?:Fields|Args):\n((?: {4}.*\n|\n(?= {4}))+)", text, re.MULTILINE)
+        for line in re.split(r"\n {4}(?! )|; ", f"\n{section[1]}" if section else ""):
+            names, _, about = line.partition(": ")
+            if unit := re.search(r"\[([^\]]+)\]", about):
+                for name in names.split(", "):
+                    found.setdefault(name, unit[1])
+    return found
+
+
+def _part_line(part: dict[str, Any]) -> str:
+    """Return type and values of a drive or a sensor; what is empty or without a limit is left out."""
+    words = [
+        f"{name} {_text(row['value'])} {row['unit']}".rstrip()
+        for name, row in part["values"].items()
+        if row["value"] not in ([], "", None, math.inf)
+    ]
+    return f"{part['type']}{': ' if words else ''}{', '.join(words)}"
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, list) and len(value) > MOST_VALUES:
+        return f"{len(value)} values from {_text(value[0])} to {_text(value[-1])}"
+    return " ".join(map(_text, value)) if isinstance(value, list) else str(value)
 
 
 def _print(name: str, row: dict[str, Any]) -> None:
@@ -163,9 +238,9 @@ def _print_robot(row: dict[str, Any]) -> None:
         print("  size    unknown: the robot has no colliders")
     print(f"  meshes  {len(row['meshes'])} read, {row['convex_pieces']} convex pieces")
     if "drive" in row:
-        print(f"  drive   {row['drive']}, latency {row['latency']:g} s")
+        print(f"  drive   {_part_line(row['drive'])}; latency {row['latency']:g} s")
         for name, sensor in row["sensors"].items():
-            print(f"  sensor  {name}: {sensor}")
+            print(f"  sensor  {name}: {_part_line(sensor)}")
     for kind in ("replaced", "repaired", "ignored", "noted"):
         for line in row[kind][:MOST_LINES]:
             print(f"  {kind:<8} {line}")

@@ -6,8 +6,8 @@ import argparse
 import json
 import math
 import os
+import re
 import sys
-import textwrap
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -53,29 +53,71 @@ def print_table(
 ) -> None:
     """Print a table on stdout; the first ``words`` columns are aligned left, the others right.
 
-    Without column names, the table has no header. In a narrow terminal the columns are closer to each other.
+    Without column names, the table has no header. A table with numbers that is wider than the terminal has columns that
+    are closer to each other, then intervals on lines of their own, then names that break after a space or a
+    punctuation mark.
     """
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
     console = Console(width=None if sys.stdout.isatty() else 120, highlight=False, markup=False)
-    widths = [
-        max(len(line) for cell in column for line in cell.splitlines() or [""])
-        for column in zip(head, *rows, strict=False)
-    ]
-    narrow = words == 1 and sum(widths) + 3 * len(widths) + 1 > console.width
+    lines = [list(row) for row in rows]
+    narrow = words < len(head) and _width(head, lines) + 2 * len(head) > console.width
+    if narrow and _width(head, lines) > console.width:
+        lines = [[*row[:words], *(cell.replace(" [", "\n[") for cell in row[words:])] for row in lines]
+    excess = _width(head, lines) - console.width
+    if narrow and excess > 0:
+        room = _shrink([_column_width(head[k], [row[k] for row in lines]) for k in range(words)], excess)
+        names = [[_break_name(name, size) for name, size in zip(row, room, strict=False)] for row in lines]
+        lines = [[*own, *row[words:]] for own, row in zip(names, lines, strict=True)]
     table = Table(box=box.SIMPLE_HEAD, show_header=any(head), padding=0 if narrow else (0, 1))
     for index, name in enumerate(head):
         table.add_column(name, justify="left" if index < words else "right", overflow="fold")
-    first = console.width - sum(widths[1:]) - len(widths) - 1
-    for row in rows:
-        name = "\n".join(textwrap.wrap(row[0], max(8, first))) if narrow else row[0]  # breaks at spaces and hyphens
-        table.add_row(name, *row[1:])
+    for line in lines:
+        table.add_row(*line)
     console.print(title, style="italic")
     console.print(table)
     if caption:
         console.print(caption, style="dim italic")
+
+
+SHORTEST_NAME = 8
+"""Smallest width of a column of names [characters]."""
+
+
+def _column_width(head: str, cells: Iterable[str]) -> int:
+    return max(len(line) for cell in (head, *cells) for line in cell.splitlines() or [""])
+
+
+def _width(head: Sequence[str], rows: Sequence[Sequence[str]]) -> int:
+    """Return the width of a table whose columns are one character apart, with its two edges."""
+    return 1 + sum(1 + _column_width(name, [row[k] for row in rows]) for k, name in enumerate(head))
+
+
+def _shrink(widths: Sequence[int], excess: int) -> list[int]:
+    """Return smaller widths: the widest column gives first, none becomes narrower than :data:`SHORTEST_NAME`."""
+    found = list(widths)
+    for _ in range(excess):
+        widest = max(range(len(found)), key=lambda k: found[k])
+        if found[widest] <= SHORTEST_NAME:
+            break
+        found[widest] -= 1
+    return found
+
+
+def _break_name(name: str, width: int) -> str:
+    """Return a name on lines of at most a width, each ending after a space or a punctuation mark if possible.
+
+    >>> _break_name("robots/mine.py:Mine", 12)
+    'robots/\\nmine.py:Mine'
+    """
+    lines = [""]
+    for word in re.findall(r"[^\s/:,_+-]*[\s/:,_+-]*", name):
+        if lines[-1] and len(lines[-1] + word.rstrip()) > width:
+            lines.append("")
+        lines[-1] += word
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def print_metrics(title: str, metrics: Mapping[str, float]) -> None:

@@ -108,6 +108,8 @@ class CommandParser(argparse.ArgumentParser):
         """Print the usage and the message, and exit with status 2."""
         if message.startswith("the following arguments are required"):  # an option has taken them as its values
             message += "; arguments come before options that take several values"
+        if option := re.fullmatch(r"argument (?:\S+/)?(--\S+): expected one argument", message):
+            message += f"; write {option[1]}=VALUE if the value begins with -"
         super().error(_in_words(message))
 
     def format_usage(self) -> str:

@@ -117,7 +117,8 @@ def _render(options: argparse.Namespace, trial: Trial, seed: int, **steering: An
         print_json({**summary, "files": [str(path) for path in files], "remarks": remarks})
         return 0
     shown = [str(path) for path in files] if len(files) <= 3 else [f"{len(files)} files in {files[0].parent}"]
-    rows = [(key, number(value)) for key, value in summary.items()] + [("file", name) for name in shown]
+    rows = [(f"{key} [Hz]" if key == "rate" else key, number(value)) for key, value in summary.items()]
+    rows += [("file", name) for name in shown]
     print_table(f"{trial.name}, seen by {camera}", ("", ""), rows)
     for remark in remarks:
         print(f"note: {remark}")

@@ -110,7 +110,7 @@ def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSourc
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:
     """Print the summary of a run and return the exit status: 1 after an exception in the code of the trial."""
-    from crowdbot.trials import passage_remarks, trial_remarks
+    from crowdbot.trials import blind_remarks, passage_remarks, trial_remarks
 
     summary = {
         "trial": done.trial.name,
@@ -129,7 +129,7 @@ def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int
         return _report_failure(done, options.debug)
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
-    for remark in (*trial_remarks(done.trial), *passage_remarks(done.trial)):
+    for remark in (*trial_remarks(done.trial), *passage_remarks(done.trial), *blind_remarks(done.trial)):
         print(f"note: {remark}")
     return _report_failure(done, options.debug)
 

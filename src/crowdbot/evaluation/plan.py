@@ -14,7 +14,7 @@ from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.trials import Trial, expand_sweeps, passage_remarks, remarks_at_end, trial_xml
+from crowdbot.trials import Trial, blind_remarks, expand_sweeps, passage_remarks, remarks_at_end, trial_xml
 
 from .method import Method, own_method
 from .run_metrics import check_families
@@ -22,6 +22,8 @@ from .run_metrics import check_families
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
 RANGE = re.compile(r"(-?\d+)(?::(-?\d+))?")
+OTHER_RANGE = re.compile(r"(-?\d+)\s*(?:\.{2,3}|-|to)\s*(-?\d+)")
+"""Ranges as other tools write them."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,8 @@ class EvaluationCell:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What a reader must know about the robots in this trial, such as a passage too narrow for a disc."""
-        return passage_remarks(self.variant)
+        """What a reader must know about the robots: passages that are too narrow, navigators that see nobody."""
+        return (*passage_remarks(self.variant), *blind_remarks(self.variant))
 
     @property
     def protocol(self) -> dict[str, Any]:
@@ -73,7 +75,7 @@ class EvaluationCell:
             "holonomic": robot.holonomic,
             "safety": robot.safety is not None,
             "margin": _margin(robot.navigator),
-            "senses": sensors,
+            "senses": ["true people", *sensors] if robot.people == "true" else sensors,
             "people": self.variant.people,
             "crowd": type(self.variant.crowd).__name__,
             "step": self.variant.step,
@@ -181,6 +183,15 @@ def parse_robots(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split(","))
 
 
+def _range_hint(part: str) -> str:
+    """Return how a range in the notation of another tool is written here, as the end of a sentence."""
+    match = OTHER_RANGE.fullmatch(part)
+    if match is None or int(match[2]) <= int(match[1]):
+        return ""
+    first, end = int(match[1]), int(match[2])
+    return f", did you mean {first}:{end} ({first} to {end - 1}) or {first}:{end + 1} ({first} to {end})?"
+
+
 def parse_seeds(text: str) -> tuple[int, ...]:
     """Return the seeds in a text: ``7``, ``0:100`` for 0 to 99, or numbers and ranges separated by commas.
 
@@ -194,11 +205,16 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     for part in text.split(","):
         match = RANGE.fullmatch(part.strip())
         if match is None:
-            raise InputError(f"seeds {text!r}: {part.strip()!r} must be a seed such as 7 or a range such as 0:100")
+            raise InputError(
+                f"seeds {text!r}: {part.strip()!r} must be a seed such as 7 or a range such as 0:100"
+                f"{_range_hint(part.strip())}"
+            )
         first = int(match[1])
         end = first + 1 if match[2] is None else int(match[2])
         if end <= first or end - first > MOST_SEEDS:
-            raise InputError(f"seeds {text!r}: the range {part.strip()!r} must have 1 to {MOST_SEEDS} seeds")
+            raise InputError(
+                f"seeds {text!r}: the range {part.strip()!r} must have 1 to {MOST_SEEDS} seeds, without its end"
+            )
         seeds += range(first, end)
     again = [seed for seed, count in Counter(seeds).items() if count > 1]
     if again:

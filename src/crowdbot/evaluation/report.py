@@ -224,7 +224,7 @@ def _contacts(cells: Sequence[CellResult]) -> str:
     about = (
         f"<p>The {MOST_CONTACTS} hardest of each row. Severity is the force over the limit of ISO/TS 15066 for the body"
         " region; above 1 is above the onset of pain. In the planar world the region is unknown: the range is that of"
-        " all regions below the height of the robot, at the closing speed of the discs.</p>"
+        " all regions below the height of the robot, at the closing speed of the bodies.</p>"
     )
     return f"<h2>Contacts with persons</h2>{about}{table}" if table else ""
 
@@ -268,7 +268,7 @@ def _words(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list | tuple):
-        return ", ".join(map(str, value)) or "the true state"
+        return ", ".join(map(str, value)) or "nothing"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 

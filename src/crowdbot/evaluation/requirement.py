@@ -93,7 +93,8 @@ def parse_requirement(text: str, metrics: dict[str, object] | None = None) -> Re
     """
     match = TEXT.fullmatch(text)
     if match is None:
-        raise InputError(f"requirement {text!r} must be like collision-rate<0.01@95% or min-clearance>0.2")
+        more = "; give each bound with its own --require" if re.search("[,;]", text) else ""
+        raise InputError(f"requirement {text!r} must be like collision-rate<0.01@95% or min-clearance>0.2{more}")
     name, comparison, bound, confidence = match.groups()
     try:
         number = float(bound)

@@ -70,7 +70,7 @@ def episode_log(episode: Episode) -> RobotLog:
         mass=float(robot.mass),
         height=float(robot.height),
         regions=REGIONS,
-        outline=robot.body.outline,
+        outlines={k: spec.body.outline for k, spec in zip(episode.robots, trial.robots, strict=True)},
     )
 
 

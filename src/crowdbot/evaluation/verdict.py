@@ -196,8 +196,10 @@ def _limit(runs: int, requirements: Sequence[Requirement]) -> str:
     bound, level = (rates[0].bound, rates[0].confidence or CONFIDENCE) if rates else (SMALL_RATE, CONFIDENCE)
     needed = runs_without_event(bound, level)
     most = -math.expm1(math.log1p(-level) / runs)
+    two_sided = proportion_interval(0, runs, CONFIDENCE).high
     return (
         f"{runs} run{'s' * (runs != 1)} can show at most this: without any contact, the rate of contacts is at most"
-        f" {_digits(100.0 * most)} % with {100.0 * level:g} % confidence (1 - {1.0 - level:.2g}^(1/{runs}));"
+        f" {_digits(100.0 * most)} % with {100.0 * level:g} % confidence (1 - {1.0 - level:.2g}^(1/{runs}), one-sided"
+        f" as in requirements; the two-sided interval of 95 % above ends at {_digits(100.0 * two_sided)} %);"
         f" a rate below {_digits(100.0 * bound)} % needs {needed} run{'s' * (needed > 1)} without a contact."
     )

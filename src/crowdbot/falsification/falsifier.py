@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.calibration import resolve_search
 from crowdbot.core import InputError, stream
-from crowdbot.trials import passage_remarks
+from crowdbot.trials import blind_remarks, passage_remarks
 
 from .cluster import find_clusters
 from .cross_entropy import CrossEntropy
@@ -111,7 +111,7 @@ def falsify(
         clusters,
         tuple(kept),
         Path(space.trial.robots[0].type).name if space.trial.robots else "",
-        passage_remarks(space.trial),
+        (*passage_remarks(space.trial), *blind_remarks(space.trial)),
     )
 
 

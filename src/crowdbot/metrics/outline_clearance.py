@@ -1,4 +1,4 @@
-"""Clearances of people to a robot whose outline is not a disc, at each row of a log."""
+"""Clearances of people and of other bodies to a robot whose outline is not a disc, at each row of a log."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from crowdbot.core import kernel
-from crowdbot.core.outlines import body_gap, swept_gap, time_to_outline
-from crowdbot.typing import Bools, Floats
+from crowdbot.core.outlines import Outlines, body_gap, swept_gap, time_to_outline
+from crowdbot.typing import Bools, Floats, Ints
 
 from .proximity import JUMP, clearance, swept_clearance, time_to_collision
 
@@ -96,6 +96,59 @@ def outline_clearance(
     everything: Any = (*arrays, robot, np.ascontiguousarray(outline), *found)
     _measure(*everything)
     return found
+
+
+@kernel
+def _measure_pair(
+    place: Floats, heading: Floats, radius: float, other: Floats, turned: Floats, size: float, there: Bools,
+    corner: Floats, first: Ints, swept: Floats, gap: Floats,
+) -> None:  # fmt: skip
+    for t in range(len(place)):
+        swept[t] = gap[t] = math.inf
+        if not there[t]:
+            continue
+        b = t - 1 if t > 0 and there[t - 1] else t
+        # a body whose heading is unknown is a disc
+        last = first[1] if math.isfinite(heading[t]) and math.isfinite(heading[b]) else first[0]
+        end = first[2] if math.isfinite(turned[t]) and math.isfinite(turned[b]) else first[1]
+        turn, begin = (heading[t], heading[b]) if last > first[0] else (0.0, 0.0)
+        face, faced = (turned[t], turned[b]) if end > first[1] else (0.0, 0.0)
+        x, y, px, py = place[t, 0], place[t, 1], other[t, 0], other[t, 1]
+        gap[t] = body_gap(x, y, turn, radius, first[0], last, px, py, face, size, first[1], end, corner)
+        swept[t] = min(
+            gap[t],
+            swept_gap(
+                place[b, 0], place[b, 1], begin, x, y, turn, radius, first[0], last,
+                other[b, 0], other[b, 1], faced, px, py, face, size, first[1], end, corner, math.inf,
+            ),
+        )  # fmt: skip
+
+
+def pair_clearance(
+    position: tuple[Floats, Floats], heading: tuple[Floats, Floats], radius: tuple[float, float],
+    outline: tuple[Floats | None, Floats | None], there: Bools,
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """Return the clearances of two bodies ``[T]`` [m]: the smallest since the row before, and that at the row.
+
+    Args:
+        position: of both bodies, ``[T, 2]`` [m].
+        heading: of both ``[T]`` [rad]; a body is a disc where it is NaN.
+        radius: of their circumscribed discs [m].
+        outline: corners ``[K, 2]`` in the frames of the bodies [m]; None for a disc.
+        there: ``[T]`` whether both are present; the clearances are infinite where not.
+
+    >>> box = np.array([[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]])
+    >>> here, beside, still = np.zeros((1, 2)), np.array([[0.0, 0.5]]), np.zeros(1)
+    >>> pair_clearance((here, beside), (still, still), (0.54, 0.54), (box, box), np.ones(1, bool))[1].round(3).tolist()
+    [0.1]
+    """
+    table = Outlines.of({k: one for k, one in enumerate(outline) if one is not None}, 2)
+    swept, gap = np.empty(len(there)), np.empty(len(there))
+    (place, other), (turn, face) = (tuple(map(np.ascontiguousarray, pair)) for pair in (position, heading))
+    sizes = (float(radius[0]), float(radius[1]))
+    arrays: Any = (place, turn, sizes[0], other, face, sizes[1], np.ascontiguousarray(there), *table, swept, gap)
+    _measure_pair(*arrays)
+    return swept, gap
 
 
 def outline_touch(

@@ -148,6 +148,11 @@ class FieldSpec:
         """XML names of the child elements."""
         return (self.word,) if self.role == "plugged" else tuple(self.elements)
 
+    @property
+    def unit(self) -> str:
+        """Unit of the value, empty without one."""
+        return "" if self.rule is None else self.rule.unit
+
     def wrong(self, value: Any) -> str:
         """Return the problem of a value as the end of a sentence; a default has none."""
         is_default = not self.required and value == self.default

@@ -21,6 +21,22 @@ def plain(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
+WITH_UNIT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?\s*[A-Za-z%°][A-Za-z0-9/%²°*^]*")
+
+
+def unit_hint(text: str, unit: str) -> str:
+    """Return the unit of a value as the end of an error about a number with letters behind it; empty otherwise.
+
+    >>> unit_hint("10m", "s")
+    '; give it in s, without the unit'
+    >>> unit_hint("ten", "s"), unit_hint("10 people", "")
+    ('', '; give the number without a unit')
+    """
+    if WITH_UNIT.fullmatch(text.strip()) is None:
+        return ""
+    return f"; give it in {unit}, without the unit" if unit else "; give the number without a unit"
+
+
 class Points(tuple[tuple[float, float], ...]):
     """Points x, y [m], written ``0,0 4,0 4,2``.
 

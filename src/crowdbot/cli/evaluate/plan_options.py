@@ -61,6 +61,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
     )
     from crowdbot.metrics import LOG_FAMILIES
 
+    seeds = parse_seeds("0:20" if options.seeds is None else options.seeds)
     values = settings(options)
     factors = parse_factors([text for texts in options.sweep for text in texts])
     trials, levels = [], {}
@@ -87,7 +88,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         trials,
         with_safety(methods) if options.safety == "both" else methods,
         parse_robots(options.robots),
-        parse_seeds(options.seeds or "0:20"),
+        seeds,
         families=families,
         factors=levels,
     )

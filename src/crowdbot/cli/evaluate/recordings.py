@@ -118,7 +118,7 @@ def _simulate(options: argparse.Namespace) -> int:
     from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_seeds, place_reality, recorded_trial
     from crowdbot.trials import apply_values
 
-    seeds = parse_seeds(options.seeds or "0:100")
+    seeds = parse_seeds("0:100" if options.seeds is None else options.seeds)
     _check_runs(len(seeds), "seeds")
     robot_run = _load(options.real, options)
     real, results = robot_run.metrics(), []

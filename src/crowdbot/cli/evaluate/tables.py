@@ -91,15 +91,23 @@ def _metric_title(metric: str) -> str:
 def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComparison]) -> None:
     """Print the comparisons of each navigator with the first one."""
     first = result.cells[0].method
+    robots = len({cell.robot for cell in result.cells}) > 1
     rows = [
-        [one.trial, one.second, _metric_title(one.metric), str(one.difference), _p_value(one.corrected)]
+        [
+            one.trial,
+            one.second,
+            *([one.robot or "own"] if robots else []),
+            _metric_title(one.metric),
+            str(one.difference),
+            _p_value(one.corrected),
+        ]
         for one in comparisons
         if one.first == first and not math.isnan(one.p_value)
     ]
     if rows:
         caption = f"paired by seed; p-values corrected for all {len(comparisons)} comparisons (Holm)"
-        head = ("trial", "navigator", "metric", f"difference to {first}", "p")
-        print_table(f"comparison with {first}", head, rows, caption, words=3)
+        head = ("trial", "navigator", *(["robot"] if robots else []), "metric", f"difference to {first}", "p")
+        print_table(f"comparison with {first}", head, rows, caption, words=4 if robots else 3)
 
 
 def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> None:

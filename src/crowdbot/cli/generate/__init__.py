@@ -77,11 +77,11 @@ def make_plan(options: argparse.Namespace) -> GenerationPlan:
     chosen = [name for name in options.sources if name in RECIPES]
     if chosen and len(options.sources) > 1:
         raise InputError(f"recipe {chosen[0]!r} must be the only source; give trials without a recipe instead")
-    seeds: Sequence[int] = parse_seeds(options.seeds or "0:10")
+    seeds: Sequence[int] = parse_seeds("0:10" if options.seeds is None else options.seeds)
     sensors = tuple(name.strip() for name in options.sensors.split(",") if name.strip())
     if chosen:
         recipe = RECIPES[chosen[0]]
-        seeds = parse_seeds(options.seeds) if options.seeds else range(recipe.seeds)
+        seeds = range(recipe.seeds) if options.seeds is None else parse_seeds(options.seeds)
         sensors = sensors or recipe.sensors
         trials = [_load(options, name, dict(values)) for name, values in recipe.trials]
     else:

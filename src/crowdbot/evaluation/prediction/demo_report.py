@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 COLORS = ("#e69f00", "#cc79a7", "#009e73", "#0072b2", "#d55e00", "#56b4e9")
 """Colours that are distinguishable with colour blindness (Okabe & Ito)."""
+LINES = (("o", "-"), ("s", "--"), ("^", "-."), ("D", ":"), ("v", "-"), ("P", "--"))
+"""Marker and line of each predictor, so that curves on one line can be told apart without colours."""
 FRAME = 0.1
 """Period of the animation [s]."""
 OPENING = 5.0
@@ -69,7 +71,7 @@ def write_demo_report(
         prediction=_prediction_table(predicted, future),
         horizon=_horizon_chart(predicted, future.dt),
         horizon_words=f"Mean distance to the true position over the horizon, over the same {predicted[0].score.persons}"
-        " person-windows.",
+        " person-windows; right: differences, on the scale of the predictors that are close to each other.",
         navigation=_navigation_table(episode),
         commands=html.escape("\n".join(f"# {what}\n{command}" for command, what in commands.items())),
         environment=html.escape(_environment(episode)),
@@ -155,21 +157,34 @@ def _environment(episode: Episode) -> str:
 
 
 def _horizon_chart(predicted: Sequence[PredictionResult], dt: float) -> str:
+    """Return a picture of the mean errors over the horizon, and beside it of their differences to the first one.
+
+    The errors of good predictors lie on one line; the scale of the differences is that of the middle predictor.
+    """
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     with rc_context({"svg.hashsalt": "crowdbot", "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 10}):
-        figure = Figure(figsize=(7.6, 3.4), layout="constrained")
-        axes = figure.add_subplot()
-        for one, color in zip(predicted, COLORS, strict=False):
-            curve = one.score.horizon
-            axes.plot(dt * np.arange(1, len(curve) + 1), curve, color=color, label=one.score.predictor, marker=".")
-        axes.set_xlabel("time ahead [s]")
-        axes.set_ylabel("mean error [m]")
-        axes.set_ylim(bottom=0.0)
-        axes.grid(alpha=0.3)
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(frameon=False)
+        figure = Figure(figsize=(9.6, 3.4), layout="constrained")
+        errors, differences = figure.subplots(1, 2)
+        first = np.asarray(predicted[0].score.horizon)
+        times = dt * np.arange(1, len(first) + 1)
+        for one, color, (marker, line) in zip(predicted, COLORS, LINES, strict=False):
+            look: dict[str, Any] = {"color": color, "label": one.score.predictor, "marker": marker, "linestyle": line}
+            curve = np.asarray(one.score.horizon)
+            errors.plot(times, curve, markersize=4, **look)
+            differences.plot(times, curve - first, markersize=4, **look)
+        errors.set_ylabel("mean error [m]")
+        errors.set_ylim(bottom=0.0)
+        errors.legend(frameon=False)
+        differences.set_ylabel(f"difference to {predicted[0].score.predictor} [m]")
+        far = [float(np.max(np.abs(np.asarray(one.score.horizon) - first))) for one in predicted[1:]]
+        if far and (reach := sorted(far)[(len(far) - 1) // 2]) > 0.0:
+            differences.set_ylim(-1.3 * reach, 1.3 * reach)
+        for axes in (errors, differences):
+            axes.set_xlabel("time ahead [s]")
+            axes.grid(alpha=0.3)
+            axes.spines[["top", "right"]].set_visible(False)
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     return text.getvalue()[text.getvalue().index("<svg") :]

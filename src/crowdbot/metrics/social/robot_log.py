@@ -7,6 +7,7 @@ import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,22 @@ from crowdbot.metrics.outline_clearance import OutlineClearance, outline_clearan
 from crowdbot.typing import Bools, Floats
 
 from .body_region import BodyRegion
+
+
+class OtherRobots(NamedTuple):
+    """Other robots in the log of a robot: T samples, Q robots.
+
+    Fields:
+        position: ``[T, Q, 2]`` [m]; NaN where absent.
+        radius: radii of their circumscribed discs ``[Q]`` [m].
+        heading: ``[T, Q]`` [rad].
+        outlines: corners ``[K, 2]`` of each in its frame [m]; None for a disc.
+    """
+
+    position: Floats
+    radius: Floats
+    heading: Floats
+    outlines: tuple[Floats | None, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,13 +56,13 @@ class RobotLog:
         success: whether the goal was reached, before any contact.
         walls: segments ``[N, 4]`` [m].
         objects: static discs ``[M, 3]``: x, y, radius [m].
-        robots: positions ``[T, Q, 2]`` and radii ``[Q]`` of other robots [m]; NaN where absent.
+        robots: other robots, or None.
         path: shortest path ``[K, 2]`` [m] from the start to the goal around walls, or None.
         max_speed: largest speed of the robot [m/s]; NaN if unknown.
         mass, height: of the robot [kg], [m]; NaN if unknown.
         groups: indices of the members of each group; None to detect them.
         regions: limits of body regions by name.
-        outline: corners ``[K, 2]`` of the robot in its frame [m], for clearances to people and walls; None for a disc.
+        outline: corners ``[K, 2]`` of the robot in its frame [m], for clearances and contacts; None for a disc.
 
     Raises:
         InputError: shapes do not match, times do not increase, or a value of the robot is not finite.
@@ -71,7 +88,7 @@ class RobotLog:
     success: bool = False
     walls: Floats = dataclasses.field(default_factory=lambda: np.zeros((0, 4)))
     objects: Floats = dataclasses.field(default_factory=lambda: np.zeros((0, 3)))
-    robots: tuple[Floats, Floats] | None = None
+    robots: OtherRobots | None = None
     path: Floats | None = None
     max_speed: float = math.nan
     mass: float = math.nan
@@ -110,6 +127,7 @@ class RobotLog:
         others: Sequence[int] = (),
         ignore: Sequence[int] = (),
         outcome: str | None = None,
+        outlines: Mapping[int, Floats | None] | None = None,
         **fields: object,
     ) -> RobotLog:
         """Return the log of one robot of a log of agents, up to the first sample at its goal.
@@ -121,6 +139,7 @@ class RobotLog:
             others: ids of other robots.
             ignore: ids of agents that do not exist for this robot, such as ghosts.
             outcome: outcome of the run (default: success if the goal is reached without contact).
+            outlines: corners ``[K, 2]`` of robots in their frames [m] by id (default: discs).
             fields: further fields.
         """
         log = AgentLog._make(column[log.active[:, robot]] for column in log)
@@ -135,14 +154,18 @@ class RobotLog:
         seen = log.active[:, people]
         radius = np.where(seen, log.radius[:, people], 0.0).max(axis=0, initial=0.0)
         rest = [k for k in others if k != robot and k not in ignore]
-        robots = None
+        robots, shapes = None, outlines or {}
         if rest:
-            place = np.where(log.active[:, rest, None], log.position[:, rest], np.nan)
-            robots = (place, log.radius[:, rest].max(axis=0, initial=0.0))
+            robots = OtherRobots(
+                np.where(log.active[:, rest, None], log.position[:, rest], np.nan),
+                log.radius[:, rest].max(axis=0, initial=0.0),
+                log.heading[:, rest],
+                tuple(shapes.get(k) for k in rest),
+            )
         made = cls(
             log.times, log.position[:, robot], log.velocity[:, robot], log.heading[:, robot],
             float(log.radius[:, robot].max(initial=0.0)), log.position[:, people], log.velocity[:, people],
-            radius, seen, aim, tolerance, robots=robots, **fields,  # type: ignore[arg-type]
+            radius, seen, aim, tolerance, robots=robots, **{"outline": shapes.get(robot), **fields},  # type: ignore[arg-type]
         )  # fmt: skip
         success = reached and not (made.least_gap < 0.0).any() if outcome is None else outcome == "success"
         return dataclasses.replace(made, success=bool(success))

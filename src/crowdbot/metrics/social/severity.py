@@ -1,4 +1,4 @@
-"""Severity of contacts by body region: a bound from discs in the plane, and the regions hit in the physics world."""
+"""Severity of contacts by body region: a bound from bodies in the plane, and the regions hit in the physics world."""
 
 from __future__ import annotations
 
@@ -47,12 +47,11 @@ class RegionImpact(Protocol):
 
 
 def severity_metrics(log: RobotLog) -> dict[str, float]:
-    """Return the metrics of the family ``severity``: bounds from the speeds of discs.
+    """Return the metrics of the family ``severity``: bounds from the closing speeds of outlines in the plane.
 
-    A log of discs does not say which region is hit. The robot reaches the regions below its height; the smallest
-    severity
-    of these is a lower bound, and the largest one an upper bound for this speed. Limbs that move faster than the person
-    (a swinging foot) are not included.
+    A log of the plane does not say which region is hit. The robot reaches the regions below its height; the smallest
+    severity of these is a lower bound, and the largest one an upper bound for this speed. Limbs that move faster than
+    the person (a swinging foot) are not included.
     """
     regions = {name: one for name, one in log.regions.items() if _reaches(log.height, name)}
     if not regions or math.isnan(log.mass):
@@ -115,9 +114,8 @@ def head_injury_criterion(force: float, region: BodyRegion, mass: float) -> floa
     """Return the head injury criterion HIC15 of an impact on the head with this largest force [N].
 
     The force of the two-body model is half a sine of the duration ``T = pi sqrt(mu / k)``, so the acceleration of the
-    head
-    is ``a(t) = F / m sin(pi t / T)``. The criterion is the largest ``(t2 - t1) (mean of a / g)^2.5`` over windows of at
-    most 15 ms; for a half sine the best window lies around its middle. Versace 1971,
+    head is ``a(t) = F / m sin(pi t / T)``. The criterion is the largest ``(t2 - t1) (mean of a / g)^2.5`` over windows
+    of at most 15 ms; for a half sine the best window lies around its middle. Versace 1971,
     https://doi.org/10.4271/710881.
 
     >>> round(head_injury_criterion(2000.0, BodyRegion(150e3, 4.4, 130.0, 0.0), 1e9), 1)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from crowdbot.metrics.contacts import contact_stretches
+from crowdbot.metrics.outline_clearance import pair_clearance
 from crowdbot.metrics.proximity import swept_distance, wall_clearance
 from crowdbot.metrics.step_clearance import step_outline_wall_clearance, step_wall_clearance
 from crowdbot.typing import Floats, Ints
@@ -84,29 +85,38 @@ def _wall_contacts(log: RobotLog) -> float:
 
 def _object_contacts(log: RobotLog) -> float:
     count = 0
-    before = np.concatenate([log.position[:1], log.position[:-1]])
     for x, y, radius in log.objects:
-        now, old = np.array([x, y]) - log.position, np.array([x, y]) - before
-        gap = np.hypot(*now.T) - radius - log.radius
-        count += len(contact_stretches(log.times, swept_distance(old, now) - radius - log.radius, gap))
+        place = np.broadcast_to(np.array([x, y]), log.position.shape)
+        count += _contacts_with(log, place, np.full(len(log.times), math.nan), float(radius), None)
     return float(count)
 
 
 def _robot_contacts(log: RobotLog) -> float:
     if log.robots is None:
         return 0.0
-    place, radius = log.robots
-    count = 0
-    for k in range(place.shape[1]):
-        there = np.isfinite(place[:, k, 0])
-        away = np.where(there[:, None], place[:, k] - log.position, 1e9)
+    rows = zip(
+        np.moveaxis(log.robots.position, 1, 0),
+        log.robots.heading.T,
+        log.robots.radius,
+        log.robots.outlines,
+        strict=True,
+    )
+    return float(sum(_contacts_with(log, place, turn, float(size), shape) for place, turn, size, shape in rows))
+
+
+def _contacts_with(log: RobotLog, place: Floats, heading: Floats, radius: float, outline: Floats | None) -> int:
+    """Return the number of contacts with a body, a disc or an outline, at places ``[T, 2]`` [m], NaN where absent."""
+    there = np.isfinite(place[:, 0])
+    if log.outline is None and outline is None:
+        away = np.where(there[:, None], place - log.position, 1e9)
         before = np.concatenate([away[:1], away[:-1]])
         joined = there & np.concatenate([there[:1], there[:-1]])
-        reach = log.radius + radius[k]
-        gap = np.hypot(*away.T) - reach
-        swept = np.where(joined, swept_distance(before, away) - reach, gap)
-        count += len(contact_stretches(log.times, swept, gap))
-    return float(count)
+        gap = np.hypot(*away.T) - log.radius - radius
+        swept = np.where(joined, swept_distance(before, away) - log.radius - radius, gap)
+    else:
+        headings, sizes = (log.heading, heading), (log.radius, radius)
+        swept, gap = pair_clearance((log.position, place), headings, sizes, (log.outline, outline), there)
+    return len(contact_stretches(log.times, swept, gap))
 
 
 def _aggregated_time(log: RobotLog) -> float:

@@ -15,6 +15,7 @@ from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.trials.stage import Stage, area
 
+from .robot_gaps import gap_to_disc
 from .spawn_layouts import goal_discs
 from .spawn_placement import InitialPeople, OccupiedDiscs, SpawnPlacement
 
@@ -79,7 +80,7 @@ def place_fixed(
     taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
     for robot in robots:
         taken.add(robot.x, robot.y, robot.radius)
-    problems: list[tuple[Any, str]] = [*_place_agents(stage, agents, taken)]
+    problems: list[tuple[Any, str]] = [*_place_agents(stage, agents, robots, taken)]
     for _, walks in recorded:
         for walk in walks:
             if walk.time[0] <= 0.0:
@@ -89,17 +90,26 @@ def place_fixed(
     return taken, problems, _agents(agents)
 
 
-def _place_agents(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
-    """Yield agents that overlap something, and add all agents to the occupied discs."""
+def _place_agents(
+    stage: Stage, agents: Sequence[Agent], robots: Sequence[RobotSpec], taken: OccupiedDiscs
+) -> Iterator[tuple[Agent, str]]:
+    """Yield agents that overlap something, and add all agents to the occupied discs.
+
+    An agent may stand in the disc of a robot beside its outline; people of spawners keep clear of the disc.
+    """
     if not agents:
         return
+    others = OccupiedDiscs(taken.cell)
     room = stage.clearance([agent.position for agent in agents])
     for agent, free in zip(agents, room.tolist(), strict=True):
         where = f"at {agent.x:g},{agent.y:g}"
         if free < agent.radius - EXACT:
             yield agent, f"stands {where}, {free:.2f} m from a wall, and the radius is {agent.radius:g} m"
-        elif not taken.free(agent.x, agent.y, agent.radius - EXACT, gap=0.0):
+        elif not others.free(agent.x, agent.y, agent.radius - EXACT, gap=0.0) or any(
+            gap_to_disc(robot, agent.position, agent.radius - EXACT) < 0.0 for robot in robots
+        ):
             yield agent, f"stands {where} and overlaps a person or a robot; move one of them"
+        others.add(agent.x, agent.y, agent.radius)
         taken.add(agent.x, agent.y, agent.radius)
 
 

@@ -1,4 +1,4 @@
-"""Passages that are too narrow for a robot."""
+"""Why a robot cannot do its task whatever its navigator does: passages too narrow for it, no sensor for people."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from crowdbot.core import InputError, Walls
 from crowdbot.navigation import PathPlanner
+from crowdbot.sensors import IMU, Bumper, Infrared, RGBCamera, Ultrasound, WheelOdometry
 
 if TYPE_CHECKING:
     from crowdbot.trials.robot import RobotSpec
@@ -16,6 +17,10 @@ PRECISION = 0.001
 """Precision [m] of the width of a passage."""
 SMALLEST = 0.05
 """Half of the width [m] of the smallest passage that counts."""
+
+
+BLIND = (Bumper, IMU, Infrared, RGBCamera, Ultrasound, WheelOdometry)
+"""Sensors whose readings show no people to navigators as :attr:`Observation.people`."""
 
 
 def passage_remarks(trial: Trial) -> tuple[str, ...]:
@@ -41,6 +46,28 @@ def passage_remarks(trial: Trial) -> tuple[str, ...]:
             f"the narrowest passage on the way of {name} is {width:.2f} m wide: less than the width of the robot,"
             f" {2.0 * robot.body.half_width:.2f} m, so it cannot reach its goal."
         )
+    return tuple(found)
+
+
+def blind_remarks(trial: Trial) -> tuple[str, ...]:
+    """Return a sentence for each robot with a type whose navigator cannot see the people of a trial.
+
+    >>> from crowdbot.trials import load_trial
+    >>> blind_remarks(load_trial("doorway", {"robot/type": "cuybot"}))
+    ()
+    """
+    found = []
+    for robot in trial.robots if trial.people else ():
+        if not robot.type or robot.mirror is not None or robot.people != "seen":
+            continue
+        if all(isinstance(mount.sensor, BLIND) for mount in robot.sensors):
+            name = "the robot" if len(trial.robots) == 1 else f"robot {robot.name!r}"
+            own = ", ".join(mount.name for mount in robot.sensors)
+            found.append(
+                f"{name} has no scanner, depth camera or other sensor that shows people ({own or 'no sensor at all'}),"
+                " so observation.people of its navigator is empty; add a <sensor> to its robot.xml, or set"
+                " robot/people=true to test the navigator with perfect knowledge."
+            )
     return tuple(found)
 
 

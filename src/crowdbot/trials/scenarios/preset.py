@@ -11,6 +11,7 @@ from typing import Any
 
 from crowdbot import models, navigation
 from crowdbot.core import InputError, TrialError, did_you_mean, find_class, parse_number
+from crowdbot.trials.notation import unit_hint
 from crowdbot.trials.parser import check_trial
 from crowdbot.trials.trial import RobotSpec, Trial
 
@@ -41,7 +42,10 @@ class PresetOption:
             if str(given).lower() not in ("true", "false"):
                 raise InputError("must be true or false")
             return str(given).lower() == "true"
-        value = parse_number(str(given))
+        try:
+            value = parse_number(str(given))
+        except InputError as error:
+            raise InputError(f"{error}{unit_hint(str(given), self.unit)}") from None
         if isinstance(self.default, int) and value != int(value):
             raise InputError("must be a whole number")
         if not self.low <= value <= self.high:

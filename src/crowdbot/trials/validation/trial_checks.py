@@ -28,6 +28,7 @@ from crowdbot.trials.partial_element import (
 )
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
+from crowdbot.trials.placement.robot_gaps import gap_to_robot, gap_to_walls, smallest_reach, start_outline
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
 from crowdbot.trials.robots.robot_pose import start_problem
@@ -369,18 +370,23 @@ def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
 
 def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
     reach = there.tolerance if has_kind(there, RobotGoal) else 0.0
-    if problem := robot_place_problem(stage, robot, there.position, reach):
+    if problem := robot_place_problem(stage, robot, there.position, reach, starts=there is robot):
         yield robot, f"{word} {problem}"
 
 
-def robot_place_problem(stage: Stage, robot: RobotSpec, place: tuple[float, float], reach: float = 0.0) -> str:
+def robot_place_problem(
+    stage: Stage, robot: RobotSpec, place: tuple[float, float], reach: float = 0.0, *, starts: bool = False
+) -> str:
     """Return why a robot cannot be at a place, as the end of a sentence; empty if it can.
+
+    A robot with an outline may turn: it fits where the disc in its outline does. At its start its heading is known.
 
     Args:
         stage: the stage.
         robot: the robot.
         place: x, y [m].
         reach: distance to the place [m] that is close enough.
+        starts: whether the place is the start of the robot, with its heading there.
 
     >>> from crowdbot.navigation import Straight
     >>> robot = RobotSpec(type="qolo", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
@@ -395,7 +401,14 @@ def robot_place_problem(stage: Stage, robot: RobotSpec, place: tuple[float, floa
         return f"at {place[0]:g},{place[1]:g} outside the walkable area"
     if block:
         return f"at {place[0]:g},{place[1]:g} inside {block}"
-    return f"{room:.2f} m from a wall, and its radius is {robot.radius:g} m" if room + reach < robot.radius else ""
+    if room + reach >= robot.radius:
+        return ""
+    if start_outline(robot) is None:
+        return f"{room:.2f} m from a wall, and its radius is {robot.radius:g} m"
+    if starts and (gap := gap_to_walls(stage, robot)) < 0.0:
+        return f"{room:.2f} m from a wall, and its outline reaches {-gap:.2f} m into it; move or turn it"
+    least = smallest_reach(robot)
+    return f"{room:.2f} m from a wall, and its outline needs {least:.2f} m in any pose" if room + reach < least else ""
 
 
 def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:
@@ -417,9 +430,10 @@ def _robot_path(stage: Stage, robot: RobotSpec) -> Problems:
 
 def _robot_overlap(robot: RobotSpec, other: RobotSpec) -> Problems:
     away = float(np.hypot(robot.x - other.x, robot.y - other.y))
-    if away < robot.radius + other.radius:
-        yield (
-            robot,
-            f"starts {away:.2f} m from robot {other.name!r}, and their radii add up to"
-            f" {robot.radius + other.radius:g} m",
-        )
+    if away >= robot.radius + other.radius or (gap := gap_to_robot(robot, other)) >= 0.0:
+        return
+    if start_outline(robot) is None and start_outline(other) is None:
+        why = f"and their radii add up to {robot.radius + other.radius:g} m"
+    else:
+        why = f"and their outlines overlap by {-gap:.2f} m"
+    yield robot, f"starts {away:.2f} m from robot {other.name!r}, {why}"

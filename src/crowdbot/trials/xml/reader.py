@@ -27,6 +27,7 @@ from crowdbot.core import (
 )
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
+from crowdbot.trials.notation import unit_hint
 from crowdbot.trials.partial_element import PartialElement, is_partial, post_init_problem, readable
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
@@ -150,7 +151,7 @@ class XmlReader:
                 value = _convert(text, part.kind)
                 wrong = part.wrong(value)
             except InputError as error:
-                wrong = str(error)
+                wrong = f"{error}{unit_hint(text, part.unit) if part.kind is not str else ''}"
             if wrong:
                 self._report(element, f"{part.word}={quote_value(text)} {wrong}")
             if not wrong or (part.word == "name" and value is not None):  # other elements may refer to a wrong name

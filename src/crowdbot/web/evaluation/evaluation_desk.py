@@ -246,7 +246,7 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
         "robot": cell.robot or cell.protocol.get("robot", ""),
         "named": cell.robot,
         "visible": cell.protocol.get("visible", True),
-        "senses": cell.protocol.get("senses", []),
+        "senses": cell.protocol.get("senses") or ["nothing"],
         "estimates": [str(cell.estimate(one)) for one in statistics],
         "runs": [
             {

@@ -130,12 +130,12 @@ def find_sensors(root: Element) -> list[FoundSensor]:
 
 
 LINK_NAMES = {
-    "lidar-2d": r"(?:^|_)(?:scan|laser|lidar|lds|rplidar|hokuyo)\d*(?:_(?:link|frame))?$",
+    "lidar2d": r"(?:^|_)(?:scan|laser|lidar|lds|rplidar|hokuyo)\d*(?:_(?:link|frame))?$",
     "imu": r"(?:^|_)imu\d*(?:_(?:link|frame))?$",
 }
 """Names of links on which a sensor is guessed, by type of sensor."""
 COMMON = {
-    "lidar-2d": {"rays": "360", "range-min": "0.1", "range-max": "10", "rate": "10"}, "imu": {"rate": "100"},
+    "lidar2d": {"rays": "360", "range-min": "0.1", "range-max": "10", "rate": "10"}, "imu": {"rate": "100"},
 }  # fmt: skip
 
 
@@ -150,7 +150,7 @@ def guess_sensors(links: Sequence[str], found: Sequence[FoundSensor]) -> list[Fo
     for kind, pattern in LINK_NAMES.items():
         link = next((name for name in links if re.search(pattern, name.lower())), None)
         if link is not None and kind not in types:
-            name = "scan" if kind == "lidar-2d" else "imu"
+            name = "scan" if kind == "lidar2d" else "imu"
             used = [one.name for one in found]
             name = name if name not in used else f"{name}_guess"
             guesses.append(FoundSensor(name, link, {"type": kind, **COMMON[kind]}, f"name of the link {link[:60]!r}"))
@@ -225,12 +225,12 @@ def _lidar(sensor: Element, shared: dict[str, str]) -> dict[str, str]:
         angles = [down + (up - down) * k / max(1, count - 1) for k in range(count)]
         values = " ".join(f"{angle:.6g}" for angle in angles)
         columns = f"{int(min(max(samples, 1), 20_000 // count))}"
-        return {"type": "lidar-3d", "elevations": values, "columns": columns, "azimuth-from": f"{low:.9g}",
+        return {"type": "lidar3d", "elevations": values, "columns": columns, "azimuth-from": f"{low:.9g}",
                 "azimuth-to": f"{high:.9g}", **reach}  # fmt: skip
     middle = 0.5 * (low + high)
     if abs(middle) > 1e-3:
         shared["yaw"] = f"{float(shared.get('yaw', 0.0)) + middle:.9g}"
-    made = {"type": "lidar-2d", "rays": f"{int(min(max(samples, 2), 4000))}"}
+    made = {"type": "lidar2d", "rays": f"{int(min(max(samples, 2), 4000))}"}
     made["field-of-view"] = f"{min(high - low, 2.0 * math.pi - 1e-8):.9g}"
     return made | reach | _noise(ray)
 
