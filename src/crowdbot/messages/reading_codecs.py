@@ -1,4 +1,4 @@
-"""Codecs of sensor readings: a table of the message types of each class of readings.
+"""Codecs of sensor readings, and the message types of the topics of a sensor.
 
 A reading is stored as messages of standard ROS types and one ``crowdbot_msgs/Reading`` with its class, the exact pose
 and fields that the standard types do not contain (labels of body parts, biases, true velocities). Fields that a
@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,7 @@ from crowdbot.sensors import (
     Reading,
     RgbImage,
     Scan,
+    Sensor,
     TrackedPeople,
 )
 
@@ -289,3 +291,40 @@ def unencoded_fields() -> list[type[Reading]]:
     classes = [getattr(sensors, name) for name in sensors.__all__]
     own = [cls for cls in classes if isinstance(cls, type) and issubclass(cls, Reading) and cls is not Reading]
     return [cls for cls in own if dataclasses.is_dataclass(cls) and cls not in CODECS]
+
+
+IMAGES = {
+    "/image": "sensor_msgs/msg/Image",
+    "/labels": "sensor_msgs/msg/Image",
+    "/camera_info": "sensor_msgs/msg/CameraInfo",
+}
+KINDS: dict[type[Reading], dict[str, str]] = {
+    Scan: {"": "sensor_msgs/msg/LaserScan"},
+    PointCloud: {"": "sensor_msgs/msg/PointCloud2"},
+    RangeReading: {"": "sensor_msgs/msg/Range"},
+    DepthImage: IMAGES,
+    ImuReading: {"": "sensor_msgs/msg/Imu"},
+    Odometry: {"": "nav_msgs/msg/Odometry"},
+    RgbImage: IMAGES,
+    BumperReading: {"": "sensor_msgs/msg/PointCloud2"},
+    PulsedScan: {"": "sensor_msgs/msg/LaserScan"},
+    TrackedPeople: {"": "people_msgs/msg/People"},
+}
+"""Message types by suffix of the topic, for each class of readings in the table of codecs."""
+
+
+def reading_topics(sensor: Sensor) -> dict[str, str]:
+    """Return the message types of a sensor by suffix of its topic; empty if ``measure`` names no known reading.
+
+    >>> from crowdbot.sensors import Lidar2D
+    >>> reading_topics(Lidar2D())
+    {'': 'sensor_msgs/msg/LaserScan', '/reading': 'crowdbot_msgs/msg/Reading'}
+    """
+    names = {cls.__name__: cls for cls in CODECS}
+    for kind in type(sensor).__mro__:
+        told = vars(kind).get("measure")
+        words = re.findall(r"\w+", str(getattr(told, "__annotations__", {}).get("return", "")))
+        for word in words:
+            if word in names:
+                return {**KINDS[names[word]], REST: KIND}
+    return {}
