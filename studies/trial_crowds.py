@@ -20,7 +20,7 @@ from crowdbot.measurement import lane_order
 from crowdbot.simulation import Episode, simulate_seeds
 from crowdbot.trials import Trial, load_trial, parse_trial
 from crowdbot.typing import Floats
-from crowdbot.validation.literature import line_speed, weidmann_speed
+from crowdbot.validation.scenario import line_speed, weidmann_speed
 
 SEEDS = 20
 BATCH = 25

@@ -14,8 +14,7 @@ from crowdbot.validation.bottleneck import bottleneck_flow
 from crowdbot.validation.corridor import corridor_crowd
 from crowdbot.validation.crowd_motion import simulate_periodic
 from crowdbot.validation.evacuation import TWO_ROOMS, corner_times, hall_departures
-from crowdbot.validation.literature import SPECIFIC_FLOW, line_speed, weidmann_speed
-from crowdbot.validation.scenario import FREE_SPEED, STEP, stream_of
+from crowdbot.validation.scenario import FREE_SPEED, SPECIFIC_FLOW, STEP, line_speed, stream_of, weidmann_speed
 from crowdbot.validation.single_file import LENGTH, file_crowd
 
 __all__ = ["CrowdValues", "measure_crowds", "with_sets"]

@@ -21,7 +21,7 @@ from crowdbot.benchmark import (
     trace_physics,
     trace_planar,
 )
-from crowdbot.benchmark.drives.trace_store import TraceStore, drive_runs
+from crowdbot.benchmark.drives.traces import TraceStore, drive_runs
 from crowdbot.cli import main
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA

@@ -28,7 +28,7 @@ from crowdbot.challenges import (
     unpack_submission,
     write_board,
 )
-from crowdbot.challenges.board import sort_entries
+from crowdbot.challenges.runner import sort_entries
 from crowdbot.cli import main
 from crowdbot.core import CrowdbotError, InputError, UnknownName
 from crowdbot.evaluation import RunRow

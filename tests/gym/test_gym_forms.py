@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Walls
 from crowdbot.gym import ActionForm, CrowdEnv, CrowdTask, CrowdVectorEnv, ObservationForm, register_environments
-from crowdbot.gym.observation_form import occupancy_grids
+from crowdbot.gym.spaces import occupancy_grids
 from crowdbot.navigation import AgentsInView, DriveLimits, ObservationBatch
 from crowdbot.trials import load_trial
 from crowdbot.world import Omnidirectional

@@ -15,11 +15,9 @@ from crowdbot.measurement import compute_individual_speed
 from crowdbot.models import ORCA, AnticipationVelocity, CollisionFreeSpeed, CrowdModel
 from crowdbot.validation import corridor
 from crowdbot.validation.bottleneck import steady_flow
-from crowdbot.validation.contact_table import compare_contacts, write_contact_page
-from crowdbot.validation.contacts import CONTACT_TRIALS, measure_contacts
+from crowdbot.validation.contacts import CONTACT_TRIALS, compare_contacts, measure_contacts, write_contact_page
 from crowdbot.validation.crowd_motion import simulate_periodic
-from crowdbot.validation.layouts import corridor_walls
-from crowdbot.validation.scenario import STEP, CrowdTracks, substeps
+from crowdbot.validation.scenario import STEP, CrowdTracks, corridor_walls, substeps
 from crowdbot.validation.section import section_of, section_values
 from crowdbot.validation.statistics import find_steady_window, summarize_starts, text_of
 

@@ -18,19 +18,22 @@ from crowdbot.validation.bottleneck import BOTTLENECK, _flow, crossings
 from crowdbot.validation.corridor import CORRIDOR, corridor_crowd
 from crowdbot.validation.crowd_motion import deepest_overlap, simulate_periodic
 from crowdbot.validation.lanes import LANES, NARROW
-from crowdbot.validation.layouts import corridor_walls, inside_solids
-from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
 from crowdbot.validation.recording import measure_recordings
 from crowdbot.validation.rimea import CORRIDOR_TIME
 from crowdbot.validation.run import ResultFile
 from crowdbot.validation.scenario import (
+    BOTTLENECK_FLOWS,
     RADIUS,
     STEP,
     CrowdTracks,
+    corridor_walls,
     gate,
+    inside_solids,
+    line_speed,
     opening,
     share,
     starts,
+    weidmann_speed,
 )
 from crowdbot.validation.single_file import SINGLE_FILE, _overtakings
 from samples import sizes

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from .drives.laboratory import DriveReport as DriveReport
     from .drives.laboratory import DriveRow as DriveRow
     from .drives.laboratory import measure_drives as measure_drives
-    from .drives.manoeuvre import Manoeuvre as Manoeuvre
-    from .drives.manoeuvre import manoeuvres as manoeuvres
-    from .drives.manoeuvre import speed_grid as speed_grid
     from .drives.traces import DriveTrace as DriveTrace
+    from .drives.traces import Manoeuvre as Manoeuvre
+    from .drives.traces import manoeuvres as manoeuvres
+    from .drives.traces import speed_grid as speed_grid
     from .drives.traces import trace_physics as trace_physics
     from .drives.traces import trace_planar as trace_planar
     from .engines.report import EngineReport as EngineReport

@@ -1,10 +1,8 @@
 """Challenges: fixed trials and seeds, submissions that nobody has to trust, verified results, and a board."""
 
-from .board import write_board
-from .challenge import Challenge, builtin_challenges, load_challenge
+from .challenge import Challenge, SecretSeeds, builtin_challenges, commit_seeds, load_challenge, load_seeds
 from .entry import ChallengeEntry, entry_differences, load_entry
-from .runner import enter
-from .secret_seeds import SecretSeeds, commit_seeds, load_seeds
+from .runner import enter, write_board
 from .submission import Submission, load_submission, pack_submission, unpack_submission
 
 __all__ = [

@@ -13,17 +13,11 @@ from crowdbot.calibration import resolve_search
 from crowdbot.core import InputError, stream
 from crowdbot.trials import blind_remarks, passage_remarks
 
-from .cluster import find_clusters
-from .cross_entropy import CrossEntropy
-from .directed import DirectedSearch
 from .failure import FailureCriterion, parse_failure
-from .found_trial import select_failures, write_failures
-from .plain_sampling import PlainSampling
-from .result import FalsificationResult, FoundFailure
-from .runner import SampleRunner
-from .sampling import Sampling
+from .result import FalsificationResult, FoundFailure, find_clusters, select_failures, write_failures
+from .sample import SampleRunner
 from .search_space import SearchSpace
-from .splitting import Splitting
+from .searches import CrossEntropy, DirectedSearch, PlainSampling, Sampling, Splitting
 
 SAMPLINGS = (CrossEntropy, Splitting, PlainSampling)
 

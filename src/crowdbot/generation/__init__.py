@@ -1,12 +1,9 @@
 """Generated data: sensor readings with ground truth, from trials and many seeds, as shards with a data card."""
 
-from .card import DataCard, card_of, card_text
+from .card import DataCard, card_of, card_text, generate
 from .episode_labels import LABEL_FORMATS, LabelFiles, export_labels
-from .generator import generate
-from .occlusion import occluded_shares
-from .plan import FORMATS, GenerationPlan, ShardJob
-from .recipe import RECIPES, Recipe, find_recipe
-from .sample_log import SampleLog
+from .plan import FORMATS, RECIPES, GenerationPlan, Recipe, ShardJob, find_recipe
+from .sample_log import SampleLog, occluded_shares
 from .shard import Shard, make_shard
 
 __all__ = [

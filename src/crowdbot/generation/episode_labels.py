@@ -15,8 +15,7 @@ from crowdbot.recording import open_rerun, read_episode
 from crowdbot.sensors import RGBCamera, Sensor
 from crowdbot.simulation import Simulation, SimulationRun
 
-from .formats.coco import join_annotations, write_images
-from .formats.kitti import write_kitti
+from .image_formats import join_annotations, write_images, write_kitti
 from .plan import with_masks
 from .sample_log import SampleLog, Table
 

@@ -1,26 +1,152 @@
-"""Shard: the files of some runs, made by a job, with their counts and hashes."""
+"""Shards of generated data, in the formats npz, Parquet and WebDataset."""
 
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-from collections.abc import Mapping
+import math
+import tarfile
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import CrowdbotError, MissingExtra, explain_write_errors
 from crowdbot.recording import record
 from crowdbot.simulation import Simulation, SimulationRun, catch_interrupt
 from crowdbot.trials import Trial, parse_trial
 
-from .formats.coco import write_images
-from .formats.kitti import write_kitti
-from .formats.npz import write_npz
-from .formats.parquet import write_parquet
-from .formats.webdataset import write_webdataset
+from .image_formats import write_images, write_kitti
 from .plan import ShardJob
 from .sample_log import SampleLog, Table
+
+
+def write_npz(
+    tables: Mapping[str, Mapping[str, NDArray[Any]]], path: Path, compressed: bool, seeds: Sequence[int]
+) -> list[Path]:
+    """Write the tables of a shard as ``PATH.npz`` and return the file.
+
+    The arrays are named ``table/field``; ``seeds`` has the seed of each episode.
+    """
+    arrays = {f"{name}/{key}": array for name, table in tables.items() for key, array in table.items()}
+    arrays["seeds"] = np.asarray(seeds, dtype=np.int64)
+    file = path.with_name(f"{path.name}.npz")
+    with file.open("wb") as stream:
+        (np.savez_compressed if compressed else np.savez)(stream, **arrays)  # type: ignore[arg-type]
+    return [file]
+
+
+def write_parquet(
+    tables: Mapping[str, Mapping[str, NDArray[Any]]], path: Path, compressed: bool, seeds: Sequence[int]
+) -> list[Path]:
+    """Write the tables of a shard as ``PATH.TABLE.parquet`` and return the files.
+
+    An array is a list of fixed length in each row; its shape is in the metadata of the column, as are the arrays that
+    all rows share. The column ``seed`` has the seed of the run.
+    """
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    files = []
+    for name, table in tables.items():
+        columns, fields = [], []
+        shared = {key[len("shared.") :]: array for key, array in table.items() if key.startswith("shared.")}
+        own = {key: array for key, array in table.items() if not key.startswith("shared.")}
+        for key, array in {"seed": np.asarray(seeds, dtype=np.int64)[table["episode"]], **own}.items():
+            values, shape = pa.array(np.ascontiguousarray(array).reshape(-1)), array.shape[1:]
+            column = pa.FixedSizeListArray.from_arrays(values, int(np.prod(shape))) if shape else values
+            columns.append(column)
+            fields.append(pa.field(key, column.type, metadata={"shape": ",".join(map(str, shape))}))
+        notes = {key: ",".join(map(repr, array.astype(float).ravel().tolist())) for key, array in shared.items()}
+        file = path.with_name(f"{path.name}.{name.replace('/', '.')}.parquet")
+        content = pa.table(columns, schema=pa.schema(fields, metadata=notes))
+        parquet.write_table(content, file, compression="zstd" if compressed else "none", use_dictionary=False)
+        files.append(file)
+    return files
+
+
+Columns = Mapping[str, NDArray[Any]]
+
+
+def write_webdataset(tables: Mapping[str, Columns], path: Path, compressed: bool, seeds: Sequence[int]) -> list[Path]:
+    """Write the samples of a shard as ``PATH.tar`` (``.tar.gz`` if compressed) and return the file.
+
+    A sample is an instant of a run at which a sensor measured: ``KEY.json`` has the agents and labels, and each array
+    of a sensor is ``KEY.ROBOT-SENSOR.FIELD.npy``; colour images are ``.png``.
+    """
+    file = path.with_name(f"{path.name}.tar{'.gz' if compressed else ''}")
+    rows: dict[tuple[int, int], dict[str, int]] = {}
+    for name, table in tables.items():
+        for row, when in enumerate(zip(table["episode"].tolist(), table["nanoseconds"].tolist(), strict=True)):
+            rows.setdefault(when, {})[name] = row
+    with file.open("wb") as raw, _stream(raw, compressed) as stream, tarfile.open(fileobj=stream, mode="w") as tar:
+        for episode, nanoseconds in sorted(rows):
+            found = rows[episode, nanoseconds]
+            if set(found) != {"agents"}:
+                facts = {"seed": int(seeds[episode]), "episode": episode, "nanoseconds": nanoseconds}
+                _write_sample(tar, f"{path.name}-{episode:03d}-{nanoseconds:013d}", facts, tables, found)
+    return [file]
+
+
+def _write_sample(
+    tar: tarfile.TarFile, key: str, facts: dict[str, Any], tables: Mapping[str, Columns], rows: Mapping[str, int]
+) -> None:
+    """Write the files of one sample: a row of some tables."""
+    for name, row in rows.items():
+        label = name.replace("/", "-")
+        facts[label] = {}
+        for column, array in tables[name].items():
+            if column in ("episode", "nanoseconds") or column.startswith("shared."):
+                continue
+            if name != "agents" and _is_data(column, array[row]):
+                _add(tar, *_file(f"{key}.{label}.{column}", column, array[row]))
+            else:
+                facts[label][column] = _plain(array[row])
+    _add(tar, f"{key}.json", json.dumps(facts, allow_nan=False).encode())
+
+
+def _stream(raw: Any, compressed: bool) -> Any:
+    if not compressed:
+        return raw
+    import gzip
+
+    return gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0)
+
+
+def _is_data(field: str, value: NDArray[Any]) -> bool:
+    labels = ("ids", "returns", "occluded", "boxes", "pose_position", "pose_rotation")
+    return value.ndim > 0 and field not in labels
+
+
+def _file(name: str, field: str, value: NDArray[Any]) -> tuple[str, bytes]:
+    content = io.BytesIO()
+    if field == "rgb":
+        from PIL import Image
+
+        Image.fromarray(value).save(content, format="PNG")
+        return f"{name}.png", content.getvalue()
+    np.save(content, value)
+    return f"{name}.npy", content.getvalue()
+
+
+def _plain(value: Any) -> Any:
+    """Return an array as lists; values that are not finite are None."""
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, list):
+        return [_plain(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _add(tar: tarfile.TarFile, name: str, content: bytes) -> None:
+    entry = tarfile.TarInfo(name)
+    entry.size, entry.mtime, entry.mode = len(content), 0, 0o644
+    tar.addfile(entry, io.BytesIO(content))
+
 
 WRITERS = {"npz": write_npz, "parquet": write_parquet, "webdataset": write_webdataset}
 

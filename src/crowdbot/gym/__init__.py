@@ -11,13 +11,11 @@ from crowdbot.core import import_optional
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
-    from .action_form import ActionForm
-    from .crowd_task import CrowdTask, TaskStep
+    from .crowd_task import CrowdTask, Reward, TaskStep
     from .environment import CrowdEnv
-    from .observation_form import PERSON_VALUES, ROBOT_VALUES, ObservationForm
     from .parallel_environment import ParallelCrowdEnv, parallel_env
     from .registration import register_environments
-    from .reward import Reward
+    from .spaces import PERSON_VALUES, ROBOT_VALUES, ActionForm, ObservationForm
     from .vector_environment import CrowdVectorEnv
 
 import_optional("gymnasium", "crowdbot.gym", "gym")

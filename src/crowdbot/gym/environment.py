@@ -13,11 +13,9 @@ from crowdbot.core import InputError
 from crowdbot.rendering import SimulationCamera, camera_names
 from crowdbot.trials import Trial, load_trial
 
-from .action_form import ActionForm
-from .crowd_task import CrowdTask
-from .observation_form import ObservationForm
-from .reward import Reward
+from .crowd_task import CrowdTask, Reward
 from .robot_port import RobotPort
+from .spaces import ActionForm, ObservationForm
 
 Observation = dict[str, NDArray[np.float32]]
 MOST_SEEDS = 2**31

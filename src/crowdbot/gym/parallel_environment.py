@@ -13,11 +13,10 @@ from crowdbot.rendering import SimulationCamera, camera_names
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial, load_trial
 
-from .action_form import ActionForm
+from .crowd_task import Reward
 from .environment import MOST_SEEDS, first_environment, port_space
-from .observation_form import ObservationForm
-from .reward import Reward
 from .robot_port import RobotPort, free_robots
+from .spaces import ActionForm, ObservationForm
 
 ParallelEnv: Any = import_optional("pettingzoo", "crowdbot.gym.parallel_env", "gym").ParallelEnv
 

@@ -15,8 +15,7 @@ from crowdbot.simulation import RobotControl, Simulation
 from crowdbot.trials import Trial
 from crowdbot.typing import Floats, Ints
 
-from .action_form import ActionForm
-from .observation_form import ObservationForm
+from .spaces import ActionForm, ObservationForm
 
 Arrays = dict[str, NDArray[np.float32]]
 

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.trials import Trial
 
-from .action_form import ActionForm
+from .crowd_task import Reward
 from .environment import MOST_SEEDS, make_task, port_space
-from .observation_form import ObservationForm
-from .reward import Reward
+from .spaces import ActionForm, ObservationForm
 
 Observations = dict[str, NDArray[np.float32]]
 

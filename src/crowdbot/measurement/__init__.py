@@ -31,12 +31,11 @@ from .people import (
     compute_individual_voronoi_polygons,
     pedpy_tracks,
 )
-from .plan import FIGURES, METHODS, MeasurementPlan
 from .plots import plot_measurements
 from .profiles import Grid, compute_profiles
 from .rows import select_rows
 from .steady import SteadyState, combine_steady_states, detect_steady_state, steady_threshold
-from .survey import Measurements, measure, pool_diagrams
+from .survey import FIGURES, METHODS, MeasurementPlan, Measurements, measure, pool_diagrams
 from .waves import StopAndGo, compute_stop_and_go, compute_stops, wave_speed
 
 __all__ = [

@@ -1,27 +1,37 @@
 """ROS 2 messages: types, CDR encoding, their form in ROS 1, and codecs of sensor readings."""
 
-from .cdr import MAP, Shape, marker_bytes, people_bytes
+from .cdr import KIND as MARKERS
+from .cdr import MAP, Shape, marker_bytes, markers, people_bytes
 from .codec import Codec, MeasuredReading, mount_pose, unpack_arrays
 from .contacts import (
     COLLISIONS,
+    FALL_POSES,
     FALLS,
     FORCES,
     ContactEventRecord,
     ContactForceRecord,
     FallRecord,
     contact_messages,
+    fall_pose_message,
     read_contact_events,
+    read_fall_poses,
     read_falls,
     read_forces,
 )
-from .fall_poses import FALL_POSES, fall_pose_message, read_fall_poses
 from .images import image_in, picture_codec
-from .marker_array import KIND as MARKERS
-from .marker_array import markers
 from .message_store import Messages
 from .point_clouds import points_in
-from .reading_codecs import CODECS, KIND, REST, codec_of, decode_reading, encode_reading, unencoded_fields
-from .reading_topics import reading_table, reading_topics
+from .reading_codecs import (
+    CODECS,
+    KIND,
+    REST,
+    codec_of,
+    decode_reading,
+    encode_reading,
+    reading_table,
+    reading_topics,
+    unencoded_fields,
+)
 from .ros1 import Ros1Messages
 
 __all__ = [

@@ -1,9 +1,16 @@
 """Validation of crowd models against experiments with people and the RiMEA tests."""
 
-from .cases import ISO_CASES, RIMEA_CASES, Case
-from .contact_table import CONTACT_REASONS, CONTACT_SECONDS, OTHER_VALUES, compare_contacts, write_contact_page
-from .contacts import ContactSummary, measure_contacts
+from .contacts import (
+    CONTACT_REASONS,
+    CONTACT_SECONDS,
+    OTHER_VALUES,
+    ContactSummary,
+    compare_contacts,
+    measure_contacts,
+    write_contact_page,
+)
 from .page import write_page
+from .rimea import ISO_CASES, RIMEA_CASES, Case
 from .run import CHECKS, STUDIES, CheckOutcome, Validation, select_models, validate, variant_of
 from .scenario import Check, Verdict
 

@@ -14,18 +14,20 @@ from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, each_start, simulate_open
-from .layouts import bottleneck_solids, inside_solids, rings
-from .literature import SPECIFIC_FLOW
 from .scenario import (
     RADIUS,
+    SPECIFIC_FLOW,
     Check,
     CrowdTracks,
     Report,
     Row,
     Verdict,
+    bottleneck_solids,
     crowds,
+    inside_solids,
     opening,
     portion,
+    rings,
     share,
     stream_of,
     tracks_of,

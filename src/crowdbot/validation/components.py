@@ -13,7 +13,6 @@ from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, each_start, safety_of, simulate_open
-from .layouts import cabin_solids, inside_solids, rings, two_rooms, waiting_room
 from .scenario import (
     RADIUS,
     STEP,
@@ -22,14 +21,19 @@ from .scenario import (
     Report,
     Row,
     Verdict,
+    cabin_solids,
     crowds,
     free_speeds,
+    inside_solids,
     opening,
     portion,
+    rings,
     share,
     stream_of,
     stuck_part,
     stuck_start,
+    two_rooms,
+    waiting_room,
 )
 from .statistics import ends_of, mean_of, summarize_starts, worst_of
 

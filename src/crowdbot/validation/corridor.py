@@ -11,8 +11,6 @@ from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 
 from .crowd_motion import deepest_overlap, one_start, simulate_periodic
-from .layouts import corridor_walls
-from .literature import weidmann_speed
 from .scenario import (
     FREE_SPEED,
     RADIUS,
@@ -21,10 +19,12 @@ from .scenario import (
     Report,
     Row,
     Verdict,
+    corridor_walls,
     free_speeds,
     share,
     starts,
     stream_of,
+    weidmann_speed,
 )
 from .section import section_of, section_values
 from .statistics import bin_values, find_steady_window, pool_bins, worst_of

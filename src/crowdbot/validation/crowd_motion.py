@@ -11,8 +11,7 @@ from crowdbot.core import InputError, Scene
 from crowdbot.models import CrowdModel
 from crowdbot.typing import Bools, Floats
 
-from .layouts import inside_solids
-from .scenario import RADIUS, SEEN, STEP, CrowdTracks, Report, Solid, substeps
+from .scenario import RADIUS, SEEN, STEP, CrowdTracks, Report, Solid, inside_solids, substeps
 
 PATIENCE = 60.0
 """A crowd of which nobody has left for this time [s] is jammed."""

@@ -13,7 +13,6 @@ from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, each_start, safety_of, simulate_open
-from .layouts import hall_solids, inside_solids, long_corner_solids, rings, two_rooms
 from .scenario import (
     RADIUS,
     STEP,
@@ -24,12 +23,17 @@ from .scenario import (
     Verdict,
     crowds,
     gate,
+    hall_solids,
+    inside_solids,
+    long_corner_solids,
     opening,
     portion,
+    rings,
     share,
     stream_of,
     stuck_part,
     stuck_start,
+    two_rooms,
 )
 from .statistics import ends_of, mean_of, summarize_starts, text_of, worst_of
 

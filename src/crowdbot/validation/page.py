@@ -10,11 +10,10 @@ from typing import Any
 from crowdbot.measurement import LANE_BAND
 
 from . import bottleneck, corridor, lanes, single_file
-from .literature import SOURCES, SPECIFIC_FLOW
 from .plots import PLOTS, draw
 from .recording import METHODS
 from .run import Validation
-from .scenario import RADIUS, STEP
+from .scenario import RADIUS, SOURCES, SPECIFIC_FLOW, STEP
 from .section import METHOD
 from .tables import (
     ability_table,

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .literature import BOTTLENECK_FLOWS, SPECIFIC_FLOW, line_speed, weidmann_speed
 from .run import Validation
+from .scenario import BOTTLENECK_FLOWS, SPECIFIC_FLOW, line_speed, weidmann_speed
 from .statistics import summarize_starts
 
 COLUMNS = 5

@@ -25,8 +25,7 @@ from crowdbot.measurement import (
 from crowdbot.typing import Floats
 
 from .bottleneck import steady_flow
-from .literature import line_speed, weidmann_speed
-from .scenario import Report
+from .scenario import Report, line_speed, weidmann_speed
 from .section import METHOD, section_values
 
 LEAST = 20

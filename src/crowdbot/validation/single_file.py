@@ -12,9 +12,19 @@ from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats
 
 from .crowd_motion import deepest_overlap, one_start, simulate_periodic
-from .layouts import corridor_walls
-from .literature import line_speed
-from .scenario import FREE_SPEED, RADIUS, Check, CrowdTracks, Report, Row, Verdict, share, stream_of
+from .scenario import (
+    FREE_SPEED,
+    RADIUS,
+    Check,
+    CrowdTracks,
+    Report,
+    Row,
+    Verdict,
+    corridor_walls,
+    line_speed,
+    share,
+    stream_of,
+)
 from .statistics import find_steady_window, summarize_starts, worst_of
 
 LENGTH = 20.0

@@ -14,7 +14,7 @@ from crowdbot.models import crowd_presets
 from crowdbot.trials import MODEL_RANGES
 
 from . import bottleneck, lanes
-from .cases import ISO_CASES, RIMEA_CASES, Case
+from .rimea import ISO_CASES, RIMEA_CASES, Case
 from .run import CHECKS, STUDIES, CheckOutcome, Validation
 from .scenario import FREE_SPEED, Check, Verdict
 from .time_steps import NAMES, TIME_STEPS

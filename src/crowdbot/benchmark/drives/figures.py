@@ -11,8 +11,7 @@ import numpy as np
 from crowdbot.typing import Floats
 from crowdbot.world import Drive
 
-from .manoeuvre import Manoeuvre
-from .traces import SAMPLE, DriveTrace
+from .traces import SAMPLE, DriveTrace, Manoeuvre
 
 SLOPE = 2
 """Samples over which accelerations are measured: 0.04 s."""

@@ -15,9 +15,7 @@ from crowdbot.benchmark.speed.timing import environment
 from crowdbot.world import Robot, builtin_robots, import_robot
 
 from .figures import DriveFigures, compare_traces
-from .manoeuvre import Manoeuvre, manoeuvres
-from .trace_store import Run, TraceStore
-from .traces import DriveTrace
+from .traces import DriveTrace, Manoeuvre, Run, TraceStore, manoeuvres
 
 
 @contextlib.contextmanager

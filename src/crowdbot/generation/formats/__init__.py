@@ -1,1 +1,0 @@
-"""Formats of generated data: npz, Parquet, WebDataset and COCO."""
