@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
-from crowdbot.core.neighbors.cell_grid import SMALL
-from crowdbot.core.neighbors.search import CROWD, IN_ORDER, compare_rows
+from crowdbot.core.neighbors import CROWD, IN_ORDER, SMALL, compare_rows
 from crowdbot.models.agent_rows import (
     COLUMNS,
     LIMIT,
