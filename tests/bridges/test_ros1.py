@@ -12,7 +12,9 @@ import struct
 import subprocess
 import sys
 import time
+import urllib.error
 import urllib.request
+import xmlrpc.client
 from importlib.resources import files
 from pathlib import Path
 
@@ -203,6 +205,12 @@ def test_hostile_connections_leave_the_node_working(master, capfd):
             request = urllib.request.Request(api, data=body or b" ", headers={"Content-Type": "text/xml"})
             with urllib.request.urlopen(request, timeout=5) as response:
                 assert b"methodResponse" in response.read()
+        page = {"Content-Type": "text/plain", "Origin": "http://evil.example"}  # what a browser lets any page send
+        for origin in ("http://evil.example", "null"):
+            body = xmlrpc.client.dumps(("/x", "by a page"), "shutdown").encode()
+            request = urllib.request.Request(api, data=body, headers=page | {"Origin": origin})
+            with pytest.raises(urllib.error.HTTPError, match="403"):
+                urllib.request.urlopen(request, timeout=5)
         wrong = pack_header({"callerid": "/x", "topic": "/robot/scan", "type": "std_msgs/String", "md5sum": "0"})
         with socket.create_connection(("127.0.0.1", port)) as other:
             other.sendall(wrong)

@@ -157,6 +157,8 @@ class SlaveApi:
             await self._runner.cleanup()
 
     async def _serve(self, request: web.Request) -> web.Response:
+        if "Origin" in request.headers:  # only browsers send it; a page may post text to any port
+            return web.Response(status=403, text="pages in a browser may not call a node")
         try:
             values, method = xmlrpc.client.loads(await request.read())
             answer = self.answer(str(method), values)
