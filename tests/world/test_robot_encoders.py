@@ -23,6 +23,7 @@ from crowdbot.world import (
     wheel_geometry,
     wheel_rotation,
 )
+from crowdbot.world.urdf import Capsule, Cylinder, Sphere
 
 WALL = [[(0.6, -3.0), (0.6, 3.0), (0.8, 3.0), (0.8, -3.0)]]
 
@@ -111,6 +112,27 @@ def test_the_description_of_a_robot_is_its_file(name: str) -> None:
         assert {name: matrix.tolist() for name, matrix in again.poses().items()} == {
             name: matrix.tolist() for name, matrix in robot.model.poses().items()
         }
+
+
+def test_capsules_are_described_by_shapes_that_urdf_has() -> None:
+    pepper = Robot.load("pepper")
+    text = robot_description(pepper)
+    assert "<capsule" in pepper.model.source
+    assert "<capsule" not in text
+    again = read_urdf(text)
+    for name, link in pepper.model.links.items():
+        for kind in ("visuals", "collisions"):
+            parts, described = getattr(link, kind), getattr(again.links[name], kind)
+            rounded = [part for part in parts if isinstance(part.shape, Capsule)]
+            assert len(described) == len(parts) + 2 * len(rounded)
+            for part in rounded:
+                (tube,) = [one for one in described if np.array_equal(one.origin, part.origin)]
+                assert tube.shape == Cylinder(part.shape.radius, part.shape.length)
+                for end in (0.5, -0.5):
+                    center = part.origin[:3, 3] + end * part.shape.length * part.origin[:3, 2]
+                    balls = [one for one in described if np.allclose(one.origin[:3, 3], center, atol=1e-12)]
+                    assert Sphere(part.shape.radius) in [one.shape for one in balls]
+                    assert {one.color for one in balls} == {part.color}
 
 
 def test_a_robot_without_a_file_is_described_by_its_links() -> None:

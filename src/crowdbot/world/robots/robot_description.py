@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import math
 from typing import TYPE_CHECKING
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from crowdbot.core import Element, format_xml
 from crowdbot.typing import Floats
 from crowdbot.world.urdf import Box, Cylinder, Joint, Link, LinkShape, Mesh, RobotModel, Sphere
 from crowdbot.world.urdf.shapes import Shape
+from crowdbot.world.urdf.transforms import roll_pitch_yaw
 
 if TYPE_CHECKING:
     from .robot import Robot
@@ -20,7 +23,8 @@ if TYPE_CHECKING:
 def robot_description(robot: Robot) -> str:
     """Return the URDF of a robot, as on the topic ``robot_description`` of ROS.
 
-    It is the text of its file, with xacro and SDF converted; names of meshes are those of the file. A robot that was
+    It is the text of its file, with xacro and SDF converted; names of meshes are those of the file. URDF has no
+    capsules: each becomes a cylinder with a sphere at each end, or RViz and others would leave it out. A robot that was
     made without a file is written from its links and joints.
 
     >>> from crowdbot.world import DifferentialDrive, Robot, read_urdf
@@ -29,7 +33,35 @@ def robot_description(robot: Robot) -> str:
     20.0
     """
     model = robot.model
-    return model.source or format_xml(_model(model))
+    text = model.source or format_xml(_model(model))
+    return _without_capsules(text) if "<capsule" in text else text
+
+
+def _without_capsules(text: str) -> str:
+    """Return the text of a robot whose capsules are cylinders with spheres at their ends."""
+    root = ElementTree.fromstring(text)  # noqa: S314, a file that read_urdf has accepted has no entities
+    for link in root.iter("link"):
+        for part in [one for one in link if one.tag in ("visual", "collision")]:
+            capsule = part.find("geometry/capsule")
+            if capsule is None:
+                continue
+            capsule.tag, length = "cylinder", float(capsule.get("length", "nan"))
+            place, turn = _origin_of(part)
+            for number, end in enumerate((length / 2.0, -length / 2.0), list(link).index(part) + 1):
+                ball = ElementTree.Element(part.tag)  # without the name of the part, which is unique
+                ElementTree.SubElement(ball, "origin", {"xyz": _row(place + end * turn[:, 2]), "rpy": "0 0 0"})
+                shape = ElementTree.SubElement(ball, "geometry")
+                ElementTree.SubElement(shape, "sphere", {"radius": capsule.get("radius", "")})
+                ball.extend(copy.deepcopy(one) for one in part if one.tag not in ("origin", "geometry"))
+                link.insert(number, ball)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _origin_of(part: ElementTree.Element) -> tuple[Floats, Floats]:
+    """Return position [m] and rotation matrix of a part in its link."""
+    origin = part.find("origin")
+    rows = {} if origin is None else {key: np.array(value.split(), dtype=np.float64) for key, value in origin.items()}
+    return rows.get("xyz", np.zeros(3)), roll_pitch_yaw(*rows.get("rpy", np.zeros(3)))
 
 
 def _model(model: RobotModel) -> Element:
