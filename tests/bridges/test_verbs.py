@@ -166,6 +166,9 @@ def test_the_fields_are_those_of_version_2_1_0_of_the_standard(trial):
     with Running(trial, [transport := MemoryTransport()], "step"):
         features = transport.call("get_simulator_features")["features"]["features"]
         rows = transport.call("get_spawnables")["spawnables"]
+        time, state = (transport.call("reset_simulation", {"scope": scope}) for scope in (1, 2))
+    assert not {21, 22} & set(features), "time and state have no reset of their own"
+    assert code(time) == code(state) == 0
     assert {40, 44, 45, 50} <= set(features), "worlds, available worlds and several entities at once"
     assert {"person", "robot/pepper"} <= {one["entity_resource"]["uri"] for one in rows}
 

@@ -363,9 +363,10 @@ def _world(name: str, about: str, resource: Mapping[str, Any]) -> dict[str, Any]
     return {"name": name, "world_resource": dict(resource), "description": about, "tags": []}
 
 
-FEATURES = (0, 1, 6, 8, 9, 10, 11, 12, 14, 20, 21, 22, 23, 24, 25, 26, 31, 32, 40, 41, 44, 45, 50)
-"""Supported features of ``simulation_interfaces/SimulatorFeatures``: all but named poses, bounds of entities, convex
-bounds, tags, setting the description of an entity, the action of steps, and unloading a world."""
+FEATURES = (0, 1, 6, 8, 9, 10, 11, 12, 14, 20, 23, 24, 25, 26, 31, 32, 40, 41, 44, 45, 50)
+"""Supported features of ``simulation_interfaces/SimulatorFeatures``: all but a reset of time or state alone, named
+poses, bounds of entities, convex bounds, tags, setting the description of an entity, the action of steps, and unloading
+a world."""
 TIME, STATE, SPAWNED, ALL = 1, 2, 4, 255
 INVALID_ENTITY_POSE, SPAWN_FAILED = 101, 150
 """Results of ``SetEntityState`` and ``SpawnEntities``."""
