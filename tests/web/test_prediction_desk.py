@@ -78,6 +78,7 @@ def test_a_run_gives_the_numbers_of_the_copied_command_and_python(desk, capsys):
     desk("add", settings={"predictor": "sampled-constant-velocity", "samples": 4, "values": {"speed_sd": 0.2}})
     desk("add", settings=ORCA)
     assert desk.run(seed=3) == {"problem": "", "cancelled": False}
+    assert [row["note"] for row in desk("results")["table"]["rows"]] == ["", "best of 4 per person", ""]
     lines = desk("command_line").splitlines()
     scores = [one["results"]["clean"]["score"] for one in desk.desk.greet()["predictors"]]
     for line, own in zip(lines, scores, strict=True):

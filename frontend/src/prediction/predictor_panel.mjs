@@ -64,7 +64,8 @@ function row(store, one, notes) {
 }
 
 function stateOf({ state, done, windows, problem, note, score }) {
-  if (state === "done") return [`ADE ${score.ade.toFixed(3)} ${score.units}`, note].filter(Boolean).join("; ");
+  const best = score?.samples > 1 && ` (best of ${score.samples})`;
+  if (state === "done") return [`ADE ${score.ade.toFixed(3)} ${score.units}${best || ""}`, note].filter(Boolean).join("; ");
   if (state === "failed") return problem;
   return state === "waits" ? "waits" : `${state === "runs" ? "running" : state}: ${done} of ${windows} frames`;
 }

@@ -61,10 +61,12 @@ def score_table(board: PredictionBoard) -> dict[str, Any]:
         results = member.results[name]
         clean = member.results[CLEAN].score if CLEAN in member.results else None
         more = score.ade - clean.ade if name != CLEAN and clean is not None else None
+        best = f"best of {score.samples} per {score.best_of}" if score.samples > 1 else ""
+        part = "" if results.state == "done" else f"{results.count} of {len(results.past)} frames"
         rows.append(
             _row(member, name)
             | {"cells": list(score.cells(heads)), "state": results.state, "difference": plain_number(more)}
-            | {"note": "" if results.state == "done" else f"{results.count} of {len(results.past)} frames"}
+            | {"note": ", ".join(filter(None, (best, part)))}
         )
     r, dt = board.recording, board.tracks.dt
     caption = (
