@@ -78,14 +78,13 @@ people walked up to them. Means over the 35 trials, before and now:
 | `policy` | 0.726, 0.743 | 0.006, 0.000 |
 | straight | 0.603, 0.660 | 0.397, 0.340 |
 
-The order by success stays, but `mpc` is now level with `time-elastic-band`. Five rows of 315 have an interval of success
-that does not meet the one before: in `perpendicular-flow` `dynamic-window`, `potential-field` and `rds` go from 0.3, 0.2
-and 0.3 to 1, in `random-goals` `dynamic-window` from 0 and straight from 0.2 to 1, since people give way.
-Two collision rates fall as clearly: straight in `random-goals`, from 0.8 to 0, and `rds` in `corner-traffic`, from 0.9 to
-0.2. So two conclusions change: `random-goals` and
-`perpendicular-flow` no longer tell these navigators apart. `straight` still touches somebody in every third run; no
-crowd makes it safe. Between the two runs, outlines of robots, walls and the planner changed, too, so not every
-difference comes from the crowd."""
+The order by success stays, but `mpc` is now level with `time-elastic-band`. Five rows of 315 have an interval of
+success that does not meet the one before: in `perpendicular-flow` `dynamic-window`, `potential-field` and `rds` go
+from 0.3, 0.2 and 0.3 to 1, in `random-goals` `dynamic-window` from 0 and straight from 0.2 to 1, since people give
+way. Two collision rates fall as clearly: straight in `random-goals`, from 0.8 to 0, and `rds` in `corner-traffic`,
+from 0.9 to 0.2. So two conclusions change: `random-goals` and `perpendicular-flow` no longer tell these navigators
+apart. `straight` still touches somebody in every third run; no crowd makes it safe. Between the two runs, outlines of
+robots, walls and the planner changed, too, so not every difference comes from the crowd."""
 CROWDNAV = ("crowdnav-circle-5", "crowdnav-circle-10", "crowdnav-circle-20", "crowdnav-square-5", "crowdnav-square-10")
 
 
