@@ -21,8 +21,8 @@ from .run_metrics import check_families
 
 MOST_SEEDS = 1_000_000
 MOST_CELLS = 10_000
-RANGE = re.compile(r"(-?\d+)(?::(-?\d+))?")
-OTHER_RANGE = re.compile(r"(-?\d+)\s*(?:\.{2,3}|-|to)\s*(-?\d+)")
+RANGE = re.compile(r"(-?\d{1,18})(?::(-?\d{1,18}))?")
+OTHER_RANGE = re.compile(r"(-?\d{1,18})\s*(?:\.{2,3}|-|to)\s*(-?\d{1,18})")
 """Ranges as other tools write them."""
 
 

@@ -21,7 +21,7 @@ def plain(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
-WITH_UNIT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?\s*[A-Za-z%°][A-Za-z0-9/%²°*^]*")
+WITH_UNIT = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[-+]?\d+)?\s*[A-Za-z%°][A-Za-z0-9/%²°*^]*")
 
 
 def unit_hint(text: str, unit: str) -> str:
