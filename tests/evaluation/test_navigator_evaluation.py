@@ -248,7 +248,7 @@ def test_wrong_plans_are_refused(trial: Trial) -> None:
         EvaluationPlan([dataclasses.replace(trial, robots=())])
 
 
-@pytest.mark.parametrize("text", ["", "a", "5:2", "1.5", "0:99999999"])
+@pytest.mark.parametrize("text", ["", "a", "5:2", "1.5", "0:99999999", "9" * 5000, "1.." + "9" * 5000], ids=range(7))
 def test_wrong_seeds_are_refused(text: str) -> None:
     with pytest.raises(InputError, match="seeds"):
         parse_seeds(text)
