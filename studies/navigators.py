@@ -185,13 +185,14 @@ def _estimate(found: CellResult, column: str) -> Estimate:
 
 
 def lines_of_page(page: str) -> Lines:
-    """Return the rows that a page has."""
+    """Return the rows that a page has; the tables of its text have fewer columns."""
     found, table = Lines(), ""
+    bars = {one.name: one.head.count("|") for one in TABLES}
     for text in page.splitlines():
         if text.startswith("#"):
             table = SECTIONS.get(text, "")
         words = text.split(" | ")
-        if table and text.startswith("| `"):
+        if table and text.startswith("| `") and text.count("|") == bars[table]:
             found[table, words[0].strip("| `"), words[1]] = text
     return found
 
