@@ -228,11 +228,11 @@ def test_a_robot_with_ros2_drives_in_a_trial(domain, tmp_path, monkeypatch, caps
     robot = start_robot("ros2", str(domain))
     words = ("--set", "duration=6", "--set", "end/collision=false")
     assert join(tmp_path, f"ros2:{domain}", *words) == 0
-    seen = ended(robot)
-    assert seen["driven"] > 0.3
+    seen, said = ended(robot), capsys.readouterr().err
+    assert seen["driven"] > 0.3, said
     assert seen["fastest"] <= 0.5 + 1e-9
     assert seen["stopped"] > 5  # scans of the virtual scanner
-    assert "poses of the robot, age median" in capsys.readouterr().err
+    assert "poses of the robot, age median" in said
 
 
 def test_the_command_refuses_what_does_not_fit(tmp_path, capsys):
