@@ -60,7 +60,7 @@ def jobs(data: Path, work: Path) -> Iterator[Job]:
         yield f"CITR: {name}", partial(cart_rows, data, predictor)
     yield "CITR: AnchorNet, reaction learned from the other runs", partial(left_out_cart_rows, data, net, work)
     for model in ("orca", "social-force", "power-law"):
-        crowd = Simulated(model, substep=0.05)
+        crowd = Simulated(model, substep=0.05, contact=0.0)
         yield f"CITR: {model}", partial(cart_rows, data, crowd)
     for trial in TRIALS:
         yield f"trial {trial}: AnchorNet", partial(built_in_rows, trial, net)

@@ -69,7 +69,7 @@ def _report(shared: Path, folder: Path) -> str:
     )  # fmt: skip
     specs = [PredictorSpec(predictor) for predictor in (*VARIANTS, Kalman())]
     for model, cost, search, goal in itertools.product(MODELS, COSTS, SEARCHES, GOALS):
-        crowd = Simulated(model, CurrentDirection(), cost, search, BUDGET)
+        crowd = Simulated(model, CurrentDirection(), cost, search, BUDGET, contact=0.0)
         specs.append(PredictorSpec(crowd, goal if goal == "ground-truth" else None))
     results = _run(PredictorEvaluation(recordings, tuple(specs)), folder, "report")
     lines = ["![ADE of every scheme and baseline](calibrated-crowds/report.png)\n"]
@@ -133,15 +133,15 @@ def _learned(shared: Path, folder: Path) -> str:
     recordings = tuple(Recording(str(shared / path), learn=0.5, **more) for path, more in PLACES.values())
 
     def scheme(model: str = "orca") -> Simulated:
-        return Simulated(model, CurrentDirection(), "progressive", "genetic", BUDGET)
+        return Simulated(model, CurrentDirection(), "progressive", "genetic", BUDGET, contact=0.0)
 
     made: dict[str, PredictorSpec] = {f"cv, mean of {one.displacements}": PredictorSpec(one) for one in VARIANTS}
     made |= {
         "Kalman": PredictorSpec(Kalman()),
-        "ORCA, current direction, as given": PredictorSpec(Simulated("orca")),
+        "ORCA, current direction, as given": PredictorSpec(Simulated("orca", contact=0.0)),
         "ORCA, current direction, each": PredictorSpec(scheme()),
         "ORCA, layout, each": PredictorSpec(scheme(), "environment-layout"),
-        "ORCA, learned, as given": PredictorSpec(Simulated("orca"), "learned-destinations"),
+        "ORCA, learned, as given": PredictorSpec(Simulated("orca", contact=0.0), "learned-destinations"),
         "ORCA, learned, each": PredictorSpec(scheme(), "learned-destinations"),
         "ORCA, learned, prior": PredictorSpec(scheme(), "learned-destinations", prior=True),
         "ORCA, learned, shared": PredictorSpec(scheme(), "learned-destinations", shared=True),

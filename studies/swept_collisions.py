@@ -15,7 +15,7 @@ import numpy as np
 
 from crowdbot.data import load
 from crowdbot.metrics import swept_collision_shares
-from crowdbot.prediction import AnchorNet, ConstantVelocity, Predictor
+from crowdbot.prediction import AnchorNet, ConstantVelocity, Predictor, Simulated
 
 FILES = {
     "eth": ("biwi_eth",), "hotel": ("biwi_hotel",), "univ": ("students001", "students003"),
@@ -32,6 +32,9 @@ def asked(fold: str) -> dict[str, tuple[Predictor, int]]:
         "20": (AnchorNet(fold), 20),
         "AnchorNet, contact 0.4, K = 1": (AnchorNet(fold, contact=0.4), 1),
         "20 ": (AnchorNet(fold, contact=0.4), 20),
+        "social force alone": (Simulated("social-force", substep=0.05, contact=0.0), 1),
+        "contact 0.25": (Simulated("social-force", substep=0.05), 1),
+        "contact 0.4": (Simulated("social-force", substep=0.05, contact=0.4), 1),
     }
 
 

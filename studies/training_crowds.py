@@ -48,7 +48,7 @@ def simulated_crowds(scenes: int = 6, seed: int = 0) -> list[Trajectories]:
     """
     found = []
     for model in CROWD_MODELS:
-        predictor = Simulated(model, substep=0.05)
+        predictor = Simulated(model, substep=0.05, contact=0.0)
         for layout in CROWD_LAYOUTS:
             rng = stream(seed, "crowds", model, layout)
             crowds = [_rows(predictor, layout, rng) for _ in range(scenes)]

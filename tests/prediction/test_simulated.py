@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,9 +12,10 @@ import pytest
 
 from crowdbot.calibration import Calibrator
 from crowdbot.core import InputError, Paper, Scene
-from crowdbot.data import Windows
+from crowdbot.data import Forecast, Windows
 from crowdbot.models import ORCA, CrowdModel, CurrentDirection, GroundTruth
 from crowdbot.prediction import ConstantVelocity, Simulated
+from crowdbot.prediction.joint_futures import separate_people
 
 Maker = Callable[..., Windows]
 
@@ -117,3 +119,42 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
         Simulated(radius=-1.0)
     with pytest.raises(InputError, match="crowd models need metres"):
         Simulated().predict(windows(np.zeros((1, 8, 1, 2)), units="px"), 12)
+
+
+def crossing(windows: Maker, **more: object) -> Windows:
+    """Two who walk through each other, side by side by 5 cm, between the rows of the future."""
+    time = np.arange(-7.0, 1.0) * 0.4
+    path = np.stack([np.stack([1.3 * time - 3.2, 0.0 * time], 1), np.stack([3.2 - 1.3 * time, 0.05 + 0 * time], 1)], 1)
+    return windows(path[None], **more)
+
+
+def swept_gap(forecast: Forecast) -> float:
+    """Return the smallest distance of two people, who walk straight between rows."""
+    away = forecast.position[0, 0, :, 0] - forecast.position[0, 0, :, 1]
+    fine = np.linspace(0.0, len(away) - 1.0, 2001)
+    return float(np.hypot(*(np.interp(fine, np.arange(len(away)), away[:, axis]) for axis in (0, 1))).min())
+
+
+def test_simulated_people_are_kept_apart_between_rows_as_learned_futures_are(windows: Maker) -> None:
+    past = crossing(windows)
+    alone = Simulated(Straight(), contact=0.0).predict(past, 12)
+    assert swept_gap(alone) == pytest.approx(0.05, abs=1e-4)
+    apart = Simulated(Straight()).predict(past, 12)
+    assert swept_gap(apart) >= 0.25
+    np.testing.assert_array_equal(apart.position, separate_people(past, alone.position, 0.25))
+    np.testing.assert_allclose(apart.position, alone.position, atol=0.11)
+    wide = dataclasses.replace(past, radius=np.array([[0.3, 0.5]]))
+    assert swept_gap(Simulated(Straight()).predict(wide, 12)) >= 0.8
+
+
+def test_simulated_people_stop_at_walls_that_their_model_does_not_see(windows: Maker) -> None:
+    past = windows(np.arange(8.0)[None, :, None, None] * np.array([0.5, 0.0]))
+    walled = dataclasses.replace(past, walls=(np.array([[5.2, -1.0], [5.2, 1.0]]),))
+    assert Simulated(Straight(), contact=0.0).predict(walled, 12).position[0, 0, -1, 0, 0] == pytest.approx(9.5)
+    assert Simulated(Straight()).predict(walled, 12).position[0, 0, -1, 0, 0] == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize("contact", [-0.1, np.inf, np.nan])
+def test_a_contact_is_finite_and_not_negative(contact: float) -> None:
+    with pytest.raises(InputError, match=r"simulated: contact = .* m must be finite and at least 0"):
+        Simulated(contact=contact)

@@ -179,3 +179,23 @@ def test_check_names_the_robot_that_was_meant(folder, capsys, name, hint):
     assert main(["check", name]) == 2
     wanted = f"there is no trial, experiment, robot, file or folder {name!r}{hint}\n{name}: 1 error\n"
     assert capsys.readouterr().out == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("mybot/robot.xml", 'type="mybot/robot.xml" is a file of a robot folder; give the folder: mybot'),
+        ("mybot/mybot.urdf", "make the folder with crowdbot new robot mybot/mybot.urdf, and give its name"),
+    ],
+)
+def test_a_file_instead_of_a_robot_folder_is_refused_with_what_to_give(folder, capsys, name, words):
+    (folder / "hall.xml").write_text(XML.format(parts="").replace('"mybot"', f'"{name}"'), encoding="utf-8")
+    for command in (
+        ["run", "frontal", "--set", f"robot/type={name}"],
+        ["evaluate", "frontal", "--robots", name],
+        ["falsify", "frontal", "--robots", name],
+        ["check", "hall.xml"],
+    ):
+        assert main(command) in (1, 2), command
+        text = capsys.readouterr()
+        assert words in text.err + text.out, command

@@ -33,7 +33,8 @@ class PredictorMotion:
     they avoid others who are tracked.
 
     Fields:
-        predictor: the predictor; default: simulated people of ORCA who keep their direction.
+        predictor: the predictor; default: simulated people of ORCA who keep their direction. The crowd model alone
+            (``contact=0``): two tracks of one person stay together.
         step: time of the forecast, and between the rows that the predictor reads [s].
 
     Raises:
@@ -49,7 +50,7 @@ class PredictorMotion:
     [0, 1]
     """
 
-    predictor: Predictor = field(default_factory=Simulated)
+    predictor: Predictor = field(default_factory=lambda: Simulated(contact=0.0))
     step: float = 0.4
 
     def __post_init__(self) -> None:

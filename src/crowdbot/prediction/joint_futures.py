@@ -65,10 +65,11 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
     """Return joint futures ``[W, K, T, A, 2]`` [m] with people at least ``contact`` [m] apart, also between rows.
 
     Where the windows have radii, people are apart by the sum of radii; half of ``contact`` is the radius of the others.
-    Paths that would cross a wall after the separation are not changed.
+    Paths that cross a wall stop there; those that would cross one after the separation are not moved.
     """
     if contact <= 0.0:
         return place
+    place, _ = _stop_at_walls(past, place)
     found = place.copy()
     for window, who in _members(past):
         if len(who) < 2:
@@ -77,13 +78,21 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
         paths = _with_plans(past, place[window][:, :, who].transpose(0, 2, 1, 3), window, who)
         moved = np.stack([separate_paths(path, fixed, room, ROUNDS) for path in np.ascontiguousarray(paths)])
         found[window][:, :, who] = moved.transpose(0, 2, 1, 3)
-    windows, slots = np.nonzero(past.present[:, -1])
-    if past.walls and len(windows):
-        now = past.position[windows, -1, slots][:, None, None]
-        _, hit = stop_at_walls(past, found[windows, :, :, slots] - now, windows, slots)
-        who, draw = np.nonzero(hit)
-        found[windows[who], draw, :, slots[who]] = place[windows[who], draw, :, slots[who]]
-    return found
+    _, hit = _stop_at_walls(past, found)
+    return np.where(hit[:, :, None, :, None], place, found)
+
+
+def _stop_at_walls(past: Windows, place: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return futures ``[W, K, T, A, 2]`` [m] that stop at walls, and a mask ``[W, K, A]`` of the stopped paths."""
+    stopped, mask = place, np.zeros((*place.shape[:2], place.shape[3]), dtype=np.bool_)
+    window, slot = np.nonzero(past.present[:, -1])
+    if past.walls and len(window):
+        now = past.position[window, -1, slot][:, None, None]
+        path, hit = stop_at_walls(past, place[window, :, :, slot] - now, window, slot)
+        mask[window, :, slot] = hit
+        stopped = place.copy()
+        stopped[window, :, :, slot] = np.where(hit[:, :, None, None], now + path, place[window, :, :, slot])
+    return stopped, mask
 
 
 def stop_at_walls(

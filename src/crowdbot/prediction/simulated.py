@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
@@ -23,9 +24,11 @@ from crowdbot.calibration import (
     resolve_model,
     resolve_search,
 )
+from crowdbot.core import InputError
 from crowdbot.data import Forecast, Windows
 from crowdbot.models import ORCA, CrowdModel, CurrentDirection, Goal
 
+from .joint_futures import separate_people
 from .predictor import Predictor, window_streams
 
 
@@ -36,6 +39,9 @@ class Simulated(Predictor):
     The initial velocity is the one that the goal is based on (the last displacement, for the current direction); its
     magnitude is the preferred speed. Robots follow their plan if it is known, else they keep their velocity; people
     avoid them. Walls come from the recording. K = 1, unless the goal has several destinations per person.
+
+    Crowd models let some people touch, above all between rows. Afterwards, those who come too close are moved apart as
+    in :class:`.AnchorNet`, and paths that cross a wall stop there.
 
     With a cost or a search, the parameters of each person are calibrated on the observed rows of each window before
     the prediction. Windows without comparable people (one person, and a cost on distances between people) keep the
@@ -51,9 +57,11 @@ class Simulated(Predictor):
         prior: population prior of the parameters.
         radius: radius of people [m], where the windows have none; a calibration of the radius starts there.
         substep: maximum time step of the simulation [s]; force models require 0.05 or less.
+        contact: minimum distance between the centres of people of a future, also between rows [m], where the windows
+            have no radii; 0 is the crowd model alone.
 
     Raises:
-        InputError: unknown name, or a value that is not above 0; in :meth:`predict`, windows in pixels.
+        InputError: unknown name, or a value outside its range; in :meth:`predict`, windows in pixels.
 
     >>> from crowdbot.data import Trajectories
     >>> rows = range(20)
@@ -72,8 +80,11 @@ class Simulated(Predictor):
     prior: PopulationPrior | None = None
     radius: float = 0.25
     substep: float = 0.1
+    contact: float = 0.25
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.contact < math.inf:
+            raise InputError(f"simulated: contact = {self.contact} m must be finite and at least 0")
         object.__setattr__(self, "model", resolve_model(self.model))
         object.__setattr__(self, "goal", resolve_goal(self.goal))
         if self.cost is not None or self.search is not None:
@@ -144,4 +155,4 @@ class Simulated(Predictor):
         self, rollout: Rollout, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator]
     ) -> Forecast:
         place, weight = futures(rollout, past, steps, samples, rngs)
-        return dataclasses.replace(self.forecast(past, place), weight=weight)
+        return dataclasses.replace(self.forecast(past, separate_people(past, place, self.contact)), weight=weight)

@@ -68,9 +68,9 @@ def robot_folder_of(name: str, folder: Path | None, trust: bool) -> Path | None:
     known = builtin_robots()
     try:
         place = (root / name).resolve()
-        there = (place / "robot.xml").is_file()
+        there, is_file = (place / "robot.xml").is_file(), place.is_file()
     except (OSError, ValueError, RuntimeError):
-        there = False
+        there = is_file = False
     if there and not trust and not place.is_relative_to(root.resolve()):
         raise InputError(
             f"type={quote_value(name)}: the robot lies outside {root.resolve()}; move its folder there, or pass"
@@ -80,6 +80,15 @@ def robot_folder_of(name: str, folder: Path | None, trust: bool) -> Path | None:
         return place
     if name in known:
         return None
+    if is_file and place.name == "robot.xml":
+        raise InputError(
+            f"type={quote_value(name)} is a file of a robot folder; give the folder: {name.rpartition('/')[0] or '.'}"
+        )
+    if is_file and place.suffix in (".urdf", ".xacro", ".sdf"):
+        raise InputError(
+            f"type={quote_value(name)} is a file of a maker, not a robot folder; make the folder with"
+            f" crowdbot new robot {name}, and give its name"
+        )
     raise InputError(
         f"type={quote_value(name)} is not a robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
         f" is in {root.resolve()}; built-in robots are {', '.join(known)}"

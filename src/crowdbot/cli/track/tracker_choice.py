@@ -77,4 +77,4 @@ def _motion(name: str) -> PredictorMotion:
     except InputError:
         if name not in builtin_classes(models, models.CrowdModel) and ":" not in name:
             raise
-    return PredictorMotion(predictor=prediction.Simulated(find_class(name, models, models.CrowdModel)()))
+    return PredictorMotion(predictor=prediction.Simulated(find_class(name, models, models.CrowdModel)(), contact=0.0))
