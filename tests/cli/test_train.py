@@ -90,6 +90,45 @@ def test_the_anchor_network_learns_and_scores_the_same_way(
     assert total["ade"] < 1.0
 
 
+def test_a_balanced_training_has_equal_shares_and_repeats_its_bytes(
+    walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["train", "anchor-net", "--data", *walks, "--fps", "25", "--updates", "2", "--check-every", "2",
+             "--set", "width=16", "social=8", "people=16"]  # fmt: skip
+    equal = ["--balance", "36"]
+    cases: tuple[tuple[list[str], int], ...] = (
+        ([], 156),
+        (equal, 72),
+        (equal, 72),
+        ([*equal, "--balance", "plaza=12"], 48),
+    )
+    found = []
+    for number, (limits, people) in enumerate(cases):
+        out = tmp_path / str(number)
+        status, _, err = said([*words, *limits, "--out", str(out)], capsys)
+        assert status == 0
+        assert f"training anchor-net on {people} futures" in err
+        found.append((out / "best.npz").read_bytes())
+    assert found[1] == found[2]
+    assert len({*found}) == 3
+
+
+@pytest.mark.parametrize(
+    ("limit", "why"),
+    [
+        ("0", "--balance 0: the number of futures must be at least 1"),
+        ("nowhere=9", "--balance nowhere=9: no recording of --data has 'nowhere' in its path"),
+    ],
+)
+def test_wrong_limits_are_refused(
+    walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], limit: str, why: str
+) -> None:
+    words = ["train", "anchor-net", "--data", *walks, "--balance", limit, "--out", str(tmp_path / "out")]
+    status, _, err = said(words, capsys)
+    assert (status, why in err) == (2, True)
+    assert not (tmp_path / "out").exists()
+
+
 def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
     walks: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -85,7 +85,7 @@ def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup, 
         kind = float if option.number else Path if option.metavar == "FILE" else str
         given: dict[str, Any] = {"metavar": option.metavar, "type": kind}
         if option.per_file:
-            given |= {"type": _per_file(kind), "action": "append"}
+            given |= {"type": per_file(kind), "action": "append"}
             text += PER_FILE if name == "fps" else f"; PART={option.metavar} as for --fps"
         elif name == "columns":
             given |= {"nargs": "+", "default": []}
@@ -94,7 +94,7 @@ def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup, 
         parser.add_argument(f"--{name.replace('_', '-')}", help=text, **given)
 
 
-def _per_file(kind: Callable[[str], Any]) -> Callable[[str], tuple[str, Any]]:
+def per_file(kind: Callable[[str], Any]) -> Callable[[str], tuple[str, Any]]:
     """Return a parser of ``VALUE`` or ``PART=VALUE`` to the part of a path and the value."""
 
     def parse(text: str) -> tuple[str, Any]:

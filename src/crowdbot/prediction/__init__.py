@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .training.checkpoint import load_checkpoint, save_checkpoint
     from .training.loop import BEST, LAST, LOG, LogRow, Trainable, TrainingResult, TrainingSchedule, train
     from .training.samples import (
+        DataSet,
         Samples,
         TimeSplit,
         leave_out,
@@ -53,6 +54,7 @@ __all__ = [
     "Anchors",
     "ConstantAcceleration",
     "ConstantVelocity",
+    "DataSet",
     "DegradedWindows",
     "Kalman",
     "KalmanAcceleration",

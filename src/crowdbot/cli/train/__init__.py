@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from crowdbot.cli.output import add_json, note, number, print_json, print_table, progress
-from crowdbot.cli.recordings import add_recordings, print_notes, recordings
+from crowdbot.cli.recordings import add_recordings, per_file, print_notes, recordings
 from crowdbot.cli.settings import add_settings, parse_settings
 
 from .detector import DETECTOR, train_detector
@@ -17,7 +17,7 @@ from .learned_scene import RUNS, SCAN_PREDICTOR, train_scan_predictor
 if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
     from crowdbot.data import Recording
-    from crowdbot.prediction import LogRow, TimeSplit, TrainingResult
+    from crowdbot.prediction import DataSet, LogRow, TimeSplit, TrainingResult
 
 LEARNERS = ("anchor-net", "social-ways")
 EPOCHS = 100
@@ -43,6 +43,11 @@ def arguments(parser: CommandParser) -> None:
         metavar="NAME",
         help="excluded test set: eth, hotel, univ, zara1, zara2, file",
     )
+    add(
+        "--balance", type=per_file(int), action="append", metavar="N",
+        help="at most N futures of each folder of recordings, evenly spaced, and a fifth of it for validation;"
+        " PART=N: of all files with PART in their path together; repeatable, the last that fits counts (default: all)",
+    )  # fmt: skip
     add("--out", type=Path, required=True, metavar="DIR", help="folder for weights, log and training state")
     add("--resume", action="store_true", help="resume the training in DIR")
     add(
@@ -104,6 +109,11 @@ def _train_predictor(options: argparse.Namespace) -> int:
         train,
     )
 
+    for part, limit in options.balance or ():
+        if limit < 1:
+            raise InputError(f"--balance {limit}: the number of futures must be at least 1")
+        if not any(part in str(path) for path in options.data):
+            raise InputError(f"--balance {part}={limit}: no recording of --data has {part!r} in its path")
     if options.resume and not (options.out / LAST).is_file():
         raise InputError(
             f"--out {options.out} has no {LAST}: nothing to resume; give the folder of a training, or omit --resume"
@@ -173,13 +183,30 @@ def _read(options: argparse.Namespace) -> _TrainingData:
         found, test = leave_out(found, options.leave_out)
     found, short = recordings_with_windows(found)
     paths = [one.path for one in test]
+    sets = _data_sets(options, found)
     if options.check is None:
-        return _TrainingData(tuple(found), split_in_time(found, options.hold), paths, short)
+        return _TrainingData(tuple(found), split_in_time(found, options.hold, sets), paths, short)
     watched = list(recordings(options, options.check))
     if options.leave_out is not None:
         watched, _ = leave_out(watched, options.leave_out)
     watched, more = recordings_with_windows(watched)
-    return _TrainingData(tuple(found), TimeSplit(Samples.of(found), Samples.of(watched)), paths, [*short, *more])
+    samples, check = Samples.of(found), Samples.of(watched)
+    if sets:
+        samples, check = samples.balance(sets), check.balance(_data_sets(options, watched), watched=True)
+    return _TrainingData(tuple(found), TimeSplit(samples, check), paths, [*short, *more])
+
+
+def _data_sets(options: argparse.Namespace, found: list[Recording]) -> list[DataSet]:
+    """Return the data set of each recording with its limit; nothing without --balance."""
+    from crowdbot.prediction import DataSet
+
+    if options.balance is None:
+        return []
+    sets = []
+    for one in found:
+        part, limit = next((pair for pair in reversed(options.balance) if pair[0] in one.path), ("", None))
+        sets.append(DataSet(part or str(Path(one.path).parent), limit))
+    return sets
 
 
 def _remarks(options: argparse.Namespace, data: _TrainingData) -> list[str]:

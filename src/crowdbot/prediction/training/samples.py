@@ -27,8 +27,17 @@ FOLDS = {
 """Held-out files of each scene of the leave-one-out protocol (Gupta et al. 2018)."""
 ENOUGH = 180.0
 """Minimum duration of a training recording in the report [s]."""
+WATCHED = 5
+"""How many times smaller the limit of a data set is in its validation."""
 BUCKET = 16
 """Number of batches whose scenes are sorted by size together, to reduce padding."""
+
+
+class DataSet(NamedTuple):
+    """A name that several recordings share, and the largest number of scored futures of all of them; None: all."""
+
+    name: str
+    limit: int | None = None
 
 
 class Scenes(NamedTuple):
@@ -174,13 +183,26 @@ class Samples:
         return self if len(self) <= most else self.select(np.linspace(0, len(self) - 1, most).round().astype(np.int64))
 
     def limit(self, people: int) -> Samples:
-        """Return evenly spaced scenes with about ``people`` scored people; all scenes if there are not more.
-
-        Limits that are the same for several data sets balance a training on all of them.
-        """
+        """Return evenly spaced scenes with about ``people`` scored people; all scenes if there are not more."""
         if self.people <= people:
             return self
         return self.subsample(max(1, round(len(self) * people / self.people)))
+
+    def balance(self, sets: Sequence[DataSet], watched: bool = False) -> Samples:
+        """Return evenly spaced scenes of each data set, with about as many scored people as its limit at most.
+
+        Limits that are the same for several data sets balance a training on all of them.
+
+        Args:
+            sets: the data set of each recording, one for each of ``names``.
+            watched: validation samples: a fifth of the limits.
+        """
+        parts = []
+        for one in dict.fromkeys(sets):
+            own = self.select(np.isin(self.source, [place for place, other in enumerate(sets) if other == one]))
+            parts.append(own if one.limit is None else own.limit(max(1, one.limit // (WATCHED if watched else 1))))
+        source = np.concatenate([part.source for part in parts])
+        return dataclasses.replace(Samples.concatenate(parts), source=source, names=self.names)
 
     def batch(self, scenes: Ints) -> Scenes:
         """Return some scenes as padded arrays."""
@@ -278,12 +300,17 @@ class TimeSplit(NamedTuple):
     whole_validation: tuple[str, ...] = ()
 
 
-def split_in_time(recordings: Sequence[Recording], share: float) -> TimeSplit:
+def split_in_time(recordings: Sequence[Recording], share: float, sets: Sequence[DataSet] = ()) -> TimeSplit:
     """Split recordings in time into training scenes and validation scenes without common rows.
 
     The last ``share`` of the windows of each recording is for validation. A recording that is too short for that is
     used as a whole: with a share of 0.2, every fifth of them for validation; the last one if there is no other
     validation.
+
+    Args:
+        recordings: the recordings.
+        share: share of the windows of each for validation.
+        sets: the data set of each recording, see :meth:`Samples.balance`; validation has a fifth of the limits.
 
     Raises:
         InputError: the share is not between 0 and 1.
@@ -311,10 +338,15 @@ def split_in_time(recordings: Sequence[Recording], share: float) -> TimeSplit:
     if not sides and not late:
         late = {whole[-1][0]}
     sides |= {place: (None, part) if place in late else (part, None) for place, part in whole}
-    ordered = [sides[place] for place in range(len(recordings))]
+
+    def joined(side: int) -> Samples:
+        kept = [place for place in range(len(recordings)) if sides[place][side] is not None]
+        samples = Samples.concatenate([part for place in kept if (part := sides[place][side]) is not None])
+        return samples.balance([sets[place] for place in kept], bool(side)) if sets else samples
+
     return TimeSplit(
-        Samples.concatenate([early for early, _ in ordered if early is not None]),
-        Samples.concatenate([part for _, part in ordered if part is not None]),
+        joined(0),
+        joined(1),
         tuple(recordings[place].name for place, _ in whole if place not in late),
         tuple(recordings[place].name for place, _ in whole if place in late),
     )
