@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import types
+import weakref
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -14,17 +15,19 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 
 from crowdbot import sensors
-from crowdbot.core import SpatialPose
+from crowdbot.core import EpisodeError, SpatialPose
 from crowdbot.messages import (
     CODECS,
     Codec,
     Messages,
+    decode_reading,
     image_in,
     points_in,
 )
-from crowdbot.recording import READING_TABLES, read_episode, replay, run
+from crowdbot.recording import READING_TABLES, export, read_episode, replay, run, step_records
 from crowdbot.simulation import Episode
 from crowdbot.trials import parse_trial
+from episode_copies import copy_episode
 from reading_comparison import same
 
 TRIAL = """<trial name="eyes" duration="2" step="0.05" seed="4">
@@ -163,8 +166,6 @@ def test_arrays_that_pretend_to_be_huge_are_refused() -> None:
 def test_tables_of_what_sensors_measured(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
     import pandas as pd
 
-    from crowdbot.recording import export
-
     path, episode = recorded
     clouds = episode.readings["robot/cloud"]
     count = {name: export(path, tmp_path / f"{name}.parquet", name) for name in READING_TABLES}
@@ -182,3 +183,88 @@ def test_tables_of_what_sensors_measured(recorded: tuple[Path, Episode], tmp_pat
     assert tracked[tracked["time"] == 0.0]["id"].tolist() == told.ids()  # type: ignore[attr-defined]
     rows = export(path, tmp_path / "bumpers.csv", "bumpers")
     assert len(pd.read_csv(tmp_path / "bumpers.csv")) == rows
+
+
+@pytest.fixture
+def decoded(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+    """Count the readings that are decoded, by class; nothing is kept from tests before."""
+    count: Counter[str] = Counter()
+
+    def counting(whole: Any, others: Any) -> Any:
+        count[whole.kind] += 1
+        return decode_reading(whole, others)
+
+    step_records.read_reading.cache_clear()
+    monkeypatch.setattr(step_records, "decode_reading", counting)
+    return count
+
+
+def test_a_reading_is_decoded_when_it_is_asked_for(recorded: tuple[Path, Episode], decoded: Counter[str]) -> None:
+    path, episode = recorded
+    read = read_episode(path)
+    assert (len(read.readings["robot/depth"]), len(read.scans), read.people["id"].size) == (11, 21, 3)
+    assert read.readings["robot/depth"].times == pytest.approx([one.time for one in episode.readings["robot/depth"]])
+    assert not decoded
+    depth = read.readings["robot/depth"]
+    assert depth[3] is depth[3]
+    same(depth[-1], episode.readings["robot/depth"][-1], "the last one")
+    assert decoded == {"DepthImage": 2}
+    assert [one.time for one in depth[1:8:3]] == [episode.readings["robot/depth"][k].time for k in (1, 4, 7)]
+    assert sum(1 for _ in depth) == 11
+    assert decoded.total() < 16
+    with pytest.raises(IndexError):
+        depth[11]
+
+
+def test_decoded_readings_are_not_kept(recorded: tuple[Path, Episode], decoded: Counter[str]) -> None:
+    clouds = read_episode(recorded[0]).readings["robot/cloud"]
+    kept = [weakref.ref(cloud) for cloud in clouds]
+    assert decoded == {"Cloud": 11}
+    assert sum(one() is not None for one in kept) <= 8
+
+
+@pytest.mark.parametrize(("table", "kinds"), [("people", set()), ("inertial", {"Inertial"}), ("points", {"Cloud"})])
+def test_a_table_decodes_the_readings_that_it_needs(
+    recorded: tuple[Path, Episode], decoded: Counter[str], tmp_path: Path, table: str, kinds: set[str]
+) -> None:
+    export(recorded[0], tmp_path / "table.parquet", table)
+    assert set(decoded) - {"Touch"} == kinds  # touches are clouds, too
+
+
+def test_images_and_clouds_have_the_types_of_the_file(recorded: tuple[Path, Episode]) -> None:
+    read = read_episode(recorded[0]).readings
+    depth: Any = read["robot/depth"][0]
+    cloud: Any = read["robot/cloud"][0]
+    assert (depth.depth.dtype, depth.hit.dtype) == (np.float32, np.int32)
+    assert (cloud.ranges.dtype, cloud.hit.dtype) == (np.float32, np.int32)
+
+
+def test_a_damaged_reading_is_named_when_it_is_asked_for(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
+    def cut(topic: str, data: bytes) -> bytes:
+        return data[:-40] if topic == "/robot/depth/image" else data
+
+    path = copy_episode(recorded[0], tmp_path / "cut.mcap", bytes_of=cut)
+    read = read_episode(path)
+    assert read.digest == recorded[1].digest
+    same(read.readings["robot/cloud"][2], recorded[1].readings["robot/cloud"][2], "cloud")
+    with pytest.raises(EpisodeError, match=r"cut.mcap is damaged: reading robot/depth at 0\.4 s: "):
+        read.readings["robot/depth"][2]
+    with pytest.raises(EpisodeError, match="reading robot/depth at 0 s"):
+        export(path, tmp_path / "images.csv", "images")
+
+
+@pytest.mark.parametrize("now", ["another episode", "nothing"])
+def test_a_file_that_changes_after_it_was_opened_is_no_other_reading(
+    recorded: tuple[Path, Episode], tmp_path: Path, now: str
+) -> None:
+    path = tmp_path / "episode.mcap"
+    path.write_bytes(recorded[0].read_bytes())
+    read = read_episode(path)
+    path.unlink()
+    if now == "nothing":
+        with pytest.raises(EpisodeError, match=r"cannot read .*episode.mcap: No such file"):
+            read.readings["robot/depth"][2]
+        return
+    run(parse_trial(TRIAL.replace('seed="4"', 'seed="5"')), out=path)
+    with pytest.raises(EpisodeError, match="it has changed since it was opened"):
+        read.readings["robot/depth"][2]

@@ -17,7 +17,18 @@ if TYPE_CHECKING:
     from .forecast import Forecast
     from .forecast_files import FORECAST_SUFFIXES, check_forecast_suffix, read_forecasts, write_forecasts
     from .homography import read_homography
-    from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
+    from .mcap_reader import (
+        MCAP_MAGIC,
+        McapChannel,
+        McapError,
+        McapMessage,
+        McapOpcode,
+        McapPlace,
+        McapReader,
+        has_summary,
+        read_attachment,
+        read_message,
+    )
     from .motion import fill_gaps, observed_velocity, resample_rows, slice_rows, steady_velocity
     from .place_layout import PlaceLayout
     from .protocols import PROTOCOLS, NoWindowError
@@ -59,8 +70,11 @@ __all__ = [
     "FileOption",
     "Forecast",
     "Frames",
+    "McapChannel",
     "McapError",
+    "McapMessage",
     "McapOpcode",
+    "McapPlace",
     "McapReader",
     "NoWindowError",
     "PlaceLayout",
@@ -86,6 +100,7 @@ __all__ = [
     "read_forecasts",
     "read_hdf5_arrays",
     "read_homography",
+    "read_message",
     "resample_rows",
     "save",
     "scenes_of_category",

@@ -6,15 +6,21 @@ record may be incomplete; this reader stops at the first incomplete record. Form
 
 from __future__ import annotations
 
+import functools
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 LARGEST = 1 << 30
 """Largest decompressed chunk [bytes]; a damaged header can claim any size."""
+HEAD = 28
+"""Bytes at the start of a chunk: its first and last time, size and checksum."""
+KEPT = 1 << 26
+"""Largest decompressed chunk [bytes] that :func:`read_message` keeps for the next message; it keeps four."""
 
 
 class McapOpcode:
@@ -36,12 +42,44 @@ class McapChannel(NamedTuple):
     text: str
 
 
+class McapRecord(NamedTuple):
+    """Place of a chunk, or of a message outside of chunks: offset and length [bytes], opcode, and its first bytes."""
+
+    start: int
+    length: int
+    kind: int
+    head: bytes
+
+    @property
+    def begin(self) -> int:
+        """First log time [ns]."""
+        return int(struct.unpack_from("<Q", self.head, 0 if self.kind == McapOpcode.CHUNK else 6)[0])
+
+
+class McapPlace(NamedTuple):
+    """Place of a message: its record, offset in the content of that [bytes], number of the channel, log time [ns]."""
+
+    record: McapRecord
+    offset: int
+    channel: int
+    stamp: int
+
+
 class McapMessage(NamedTuple):
-    """A message: channel, log time [ns] and content."""
+    """A message: channel, log time [ns], content (empty if it is read later, by :func:`read_message`), and place."""
 
     topic: McapChannel
     stamp: int
     data: bytes
+    place: McapPlace
+
+
+Later = Callable[[McapChannel], bool]
+"""Whether the contents of the messages of a channel are read later."""
+
+
+def _at_once(channel: McapChannel) -> bool:
+    return False
 
 
 @dataclass
@@ -66,13 +104,30 @@ class McapReader:
     crc: int = 0
     schemas: dict[int, tuple[str, str]] = field(default_factory=dict)
 
-    def messages(self) -> Iterator[McapMessage]:
-        """Yield the messages in file order."""
-        for kind, _, body in self.records():
+    def messages(self, later: Later = _at_once) -> Iterator[McapMessage]:
+        """Yield the messages in file order.
+
+        A chunk of which all messages are read later is not decompressed: its index tells them. An index counts if
+        another record follows it; a killed writer may have left a part of it.
+
+        Args:
+            later: whether the messages of a channel have no content here, but are read by :func:`read_message`.
+        """
+        chunk: tuple[int, bytes] | None = None
+        index: list[bytes] = []
+        for kind, place, body in self.records():
+            if kind == McapOpcode.MESSAGE_INDEX:
+                index.append(body)
+                continue
+            if chunk is not None:
+                yield from self._inside(*chunk, index, later)
+            chunk, index = None, []
             if kind == McapOpcode.CHUNK:
-                yield from self._inside(body)
+                chunk = place, body
             elif kind == McapOpcode.MESSAGE:
-                yield self._message(body)
+                yield self._message(McapRecord(place, len(body), kind, body[:HEAD]), 0, body, later)
+        if chunk is not None:
+            yield from self._inside(*chunk, index if self.ended else [], later)
 
     def records(self) -> Iterator[tuple[int, int, bytes]]:
         """Yield opcode, offset [bytes] and content of every complete record of the data section."""
@@ -122,26 +177,75 @@ class McapReader:
         except (struct.error, UnicodeDecodeError) as error:
             raise McapError(f"the record at byte {self.end} is broken: {error}") from None
 
-    def _inside(self, body: bytes) -> Iterator[McapMessage]:
+    def _inside(self, start: int, body: bytes, index: list[bytes], later: Later) -> Iterator[McapMessage]:
+        record = McapRecord(start, len(body), McapOpcode.CHUNK, body[:HEAD])
+        if index and len(record.head) == HEAD and (places := self._indexed(record, index, later)) is not None:
+            for place in places:
+                yield McapMessage(self.topics[place.channel], place.stamp, b"", place)
+            return
         data = _decompress(body)
-        place = 0
-        while place + 9 <= len(data):
-            kind, length = struct.unpack_from("<BQ", data, place)
-            record = data[place + 9 : place + 9 + length]
-            if len(record) != length:
-                raise McapError(f"the chunk at byte {self.end} is broken")
+        offset = 0
+        while offset + 9 <= len(data):
+            kind, length = struct.unpack_from("<BQ", data, offset)
+            if offset + 9 + length > len(data):
+                raise McapError(f"the chunk at byte {start} is broken")
             if kind == McapOpcode.MESSAGE:
-                yield self._message(record)
+                yield self._message(record, offset, memoryview(data)[offset + 9 : offset + 9 + length], later)
             else:
-                self._learn(kind, record)
-            place += 9 + length
+                self._learn(kind, data[offset + 9 : offset + 9 + length])
+            offset += 9 + length
 
-    def _message(self, body: bytes) -> McapMessage:
+    def _indexed(self, record: McapRecord, index: list[bytes], later: Later) -> list[McapPlace] | None:
+        """Return the messages of a chunk in their order, from its index; None if some are not read later."""
+        found: list[tuple[int, int, int]] = []
+        for body in index:
+            try:
+                number, length = struct.unpack_from("<HI", body)
+                if number not in self.topics or not later(self.topics[number]) or length != len(body) - 6:
+                    return None
+                found += [(offset, number, stamp) for stamp, offset in struct.iter_unpack("<QQ", body[6:])]
+            except struct.error:
+                return None
+        return [McapPlace(record, offset, number, stamp) for offset, number, stamp in sorted(found)]
+
+    def _message(self, record: McapRecord, offset: int, body: bytes | memoryview, later: Later) -> McapMessage:
         try:
             number, _, stamp, _ = struct.unpack_from("<HIQQ", body)
-            return McapMessage(self.topics[number], stamp, body[22:])
+            topic = self.topics[number]
         except (struct.error, KeyError):
-            raise McapError(f"the message at byte {self.end} is broken") from None
+            raise McapError(f"the message at byte {record.start} is broken") from None
+        data = b"" if later(topic) else bytes(body[22:])
+        return McapMessage(topic, stamp, data, McapPlace(record, offset, number, stamp))
+
+
+def read_message(path: Path, place: McapPlace) -> bytes:
+    """Return the content of a message.
+
+    Raises:
+        McapError: the chunk is damaged, or the file is not the one in which the message was found.
+        OSError: the file cannot be read.
+    """
+    record = place.record
+    size = struct.unpack_from("<Q", record.head, 16)[0] if record.kind == McapOpcode.CHUNK else record.length
+    data = (_content if size <= KEPT else _content.__wrapped__)(path, record)
+    lead = struct.Struct("<BQHIQQ")
+    if 0 <= place.offset <= len(data) - lead.size:
+        kind, length, number, _, stamp, _ = lead.unpack_from(data, place.offset)
+        end = place.offset + 9 + length
+        if (kind, number, stamp) == (McapOpcode.MESSAGE, place.channel, place.stamp) and end <= len(data):
+            return data[place.offset + lead.size : end]
+    raise McapError(f"the index of the chunk at byte {record.start} is wrong")
+
+
+@functools.lru_cache(maxsize=4)
+def _content(path: Path, record: McapRecord) -> bytes:
+    """Return the content of a chunk, or the record of a message outside of chunks."""
+    with path.open("rb") as stream:
+        stream.seek(record.start)
+        lead, body = stream.read(9), stream.read(record.length)
+    if lead != struct.pack("<BQ", record.kind, record.length) or body[:HEAD] != record.head:
+        raise McapError("it has changed since it was opened")
+    return _decompress(body) if record.kind == McapOpcode.CHUNK else lead + body
 
 
 def read_attachment(body: bytes) -> tuple[str, bytes]:

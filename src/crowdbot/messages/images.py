@@ -94,8 +94,8 @@ def _write_depth(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]
 
 def _read_depth(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        "depth": image_in(others["/image"]).astype(np.float64)[None],
-        "hit": image_in(others["/labels"]).astype(np.int64)[None],
+        "depth": image_in(others["/image"])[None],
+        "hit": image_in(others["/labels"])[None],
         "lens": lens_in(others["/camera_info"]),
     }
 
@@ -112,7 +112,7 @@ def _read_picture(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[st
     labels = others.get("/labels")
     return {
         "rgb": image_in(others["/image"])[None],
-        "hit": None if labels is None else image_in(labels).astype(np.int64)[None],
+        "hit": None if labels is None else image_in(labels)[None],
         "lens": lens_in(others["/camera_info"]),
     }
 

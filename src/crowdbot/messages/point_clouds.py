@@ -96,9 +96,8 @@ def _write_cloud(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]
 def _read_cloud(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
     rows = points_in(others[""])
     return {
-        "ranges": rows["range"].astype(np.float64)[None],
-        "hit": rows["label"].astype(np.int64)[None],
-        "cos_incidence": rows["intensity"].astype(np.float64)[None],
+        name: np.ascontiguousarray(rows[column])[None]
+        for name, column in (("ranges", "range"), ("hit", "label"), ("cos_incidence", "intensity"))
     }
 
 

@@ -137,9 +137,7 @@ def _table(kind: type[Reading], rows: Callable[[Any], Columns], names: tuple[str
 
     def columns(moment: RecordedStep, bodies: Mapping[str, tuple[int, float]]) -> Columns:
         found: dict[str, list[Any]] = {name: [] for name in ("time", "sensor", *PLACE, *names)}
-        for topic, reading in moment.readings.items():
-            if not isinstance(reading, kind):
-                continue
+        for topic, reading in moment.readings.of(kind):
             values = rows(reading)
             count = len(values[names[0]])
             pose = spatial_pose(reading.pose)
@@ -188,9 +186,7 @@ class ImageExport:
     def columns(self, moment: RecordedStep, bodies: Mapping[str, tuple[int, float]]) -> dict[str, Any]:
         """Write the images of a step and return the rows of the table with their files."""
         rows = READING_TABLES["pictures"](moment, bodies)
-        files = [
-            self._written(topic, reading) for topic, reading in moment.readings.items() if isinstance(reading, RgbImage)
-        ]
+        files = [self._written(topic, reading) for topic, reading in moment.readings.of(RgbImage)]
         return {**rows, "file": np.array(files, dtype=object)}
 
     def finish(self) -> None:

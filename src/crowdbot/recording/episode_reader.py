@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO, TypeVar
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +27,16 @@ from crowdbot.world import REACTIONS
 
 from .episode_repair import EpisodeEnd
 from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, FORMAT, KEYS, METADATA, from_json
-from .step_records import RecordedContact, RecordedStep, read_steps
+from .step_records import (
+    RecordedContact,
+    RecordedSequence,
+    RecordedStep,
+    StepReadings,
+    read_reading,
+    read_scan,
+    read_steps,
+)
 
-T = TypeVar("T")
 ODOM = "/odom"
 """Ending of the frame in which the root link of a robot moves."""
 
@@ -50,9 +57,10 @@ class RecordedEpisode:
         ids: ``[A]``.
         robots: indices of the robots.
         commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s].
-        readings: all readings by ``robot/sensor``; values of 32-bit message fields have that precision
+        readings: all readings by ``robot/sensor``, each read from the file when it is asked for; a damaged one raises
+            :class:`~crowdbot.core.EpisodeError` then. Values of 32-bit message fields have that precision
             (:mod:`crowdbot.messages.reading_codecs`).
-        scans_by_topic: scans of planar laser scanners, by ``robot/sensor``.
+        scans_by_topic: scans of planar laser scanners, by ``robot/sensor``, likewise.
         walls: rings ``[N, 2]`` [m].
         metrics: metrics by name.
         contacts: contacts of robots in all time steps.
@@ -77,12 +85,12 @@ class RecordedEpisode:
     ids: NDArray[np.int64]
     robots: tuple[int, ...]
     commands: Floats
-    scans_by_topic: Mapping[str, tuple[ScanRow, ...]]
+    scans_by_topic: Mapping[str, RecordedSequence[ScanRow]]
     walls: tuple[Floats, ...]
     metrics: Mapping[str, float]
     contacts: tuple[RecordedContact, ...]
     digests: tuple[str, ...]
-    readings: Mapping[str, tuple[Reading, ...]] = field(default_factory=dict)
+    readings: Mapping[str, RecordedSequence[Reading]] = field(default_factory=dict)
     forces: tuple[ContactForceRecord, ...] = ()
     collisions: tuple[ContactEventRecord, ...] = ()
     falls: tuple[FallRecord, ...] = ()
@@ -138,7 +146,7 @@ class RecordedEpisode:
         return f"crowdbot {self.version}"
 
     @property
-    def scans(self) -> tuple[ScanRow, ...]:
+    def scans(self) -> Sequence[ScanRow]:
         """Scans of the first laser scanner of the first robot."""
         return next(iter(self.scans_by_topic.values()), ())
 
@@ -205,7 +213,7 @@ def read_episode(path: Path | str) -> RecordedEpisode:
     with _opened(path) as stream:
         tape = McapReader(stream)
         with _sentences(path):
-            found = list(read_steps(tape))
+            found = list(read_steps(tape, path))
         known = _known(path, tape.metadata)
     with _sentences(path, f"has an invalid metadata record {METADATA!r}"):
         return _assembled(path, known, found)
@@ -236,7 +244,7 @@ def iterate_steps(path: Path | str) -> Iterator[RecordedStep]:
     path = Path(path)
     with _opened(path) as stream, _sentences(path):
         tape = McapReader(stream)
-        yield from read_steps(tape)
+        yield from read_steps(tape, path)
     _known(path, tape.metadata)
 
 
@@ -292,11 +300,12 @@ def recorded_failure(known: Mapping[str, str]) -> RunFailure | None:
     return RunFailure(known["error"], known.get("error_place", "unknown"), float(known.get("error_time", "nan")))
 
 
-def _by_topic(found: Iterable[Mapping[str, T]]) -> dict[str, list[T]]:
-    rows: dict[str, list[T]] = {}
+def _places(found: Iterable[StepReadings[Any]]) -> dict[str, list[Any]]:
+    """Return the places of readings by ``robot/sensor``."""
+    rows: dict[str, list[Any]] = {}
     for one in found:
-        for topic, row in one.items():
-            rows.setdefault(topic, []).append(row)
+        for name, place in one.places.items():
+            rows.setdefault(name, []).append(place)
     return rows
 
 
@@ -312,7 +321,11 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
     if complete:
         count = int(known["people"]) + start
     else:
-        count = 1 + max([-1, *places, *(who for moment in found for who in moment.largest_ids())])
+        ending = EpisodeEnd(known)
+        for moment in found:
+            ending.take(moment)
+        known = known | ending.metadata()
+        count = max([ending.count, *(1 + place for place in places)])
     arrays = _Arrays.of(len(due), count)
     commands = np.full((len(due), len(robots), 3), np.nan)
     for k, (moment, people) in enumerate(due):
@@ -322,14 +335,8 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
                 continue
             arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
             commands[k, r] = moment.commands[robot["name"]]
-    scans: dict[str, list[ScanRow]] = _by_topic(moment.scans for moment in found)
-    readings: dict[str, list[Reading]] = _by_topic(moment.readings for moment in found)
+    scans, readings = _places(moment.scans for moment in found), _places(moment.readings for moment in found)
     times = np.array([moment.time for moment, _ in due])
-    if not complete:
-        ending = EpisodeEnd(known)
-        for moment in found:
-            ending.take(moment)
-        known = known | ending.metadata()
     if "added_robots" in known:
         known = known | {"robots": json.dumps(robots)}
     return RecordedEpisode(
@@ -345,12 +352,12 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         np.arange(count, dtype=np.int64),
         tuple(places),
         commands,
-        {topic: tuple(rows) for topic, rows in scans.items()},
+        {name: RecordedSequence(rows, read_scan) for name, rows in scans.items()},
         tuple(np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])),
         from_json(known["metrics"]),
         tuple(contact for moment in found for contact in moment.contacts),
         tuple(moment.digest for moment, _ in due),
-        {topic: tuple(rows) for topic, rows in readings.items()},
+        {name: RecordedSequence(rows, read_reading) for name, rows in readings.items()},
         tuple(force for moment in found for force in moment.forces),
         tuple(collision for moment in found for collision in moment.collisions),
         tuple(fall for moment in found for fall in moment.falls),

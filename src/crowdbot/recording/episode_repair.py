@@ -114,7 +114,7 @@ def repair(path: Path | str) -> float | None:
                 raise EpisodeError(f"{path} is not an MCAP file")
             stream.seek(0)
             tape, ending = McapReader(stream), None
-            for moment in read_steps(tape):
+            for moment in read_steps(tape, path):
                 ending = ending or EpisodeEnd(tape.metadata.get(METADATA, {}))
                 ending.take(moment)
             if ending is None or ending.last is None:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
+import functools
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
-from crowdbot.core import Pose
-from crowdbot.data import McapReader
+from crowdbot.core import EpisodeError, Pose
+from crowdbot.data import McapChannel, McapMessage, McapPlace, McapReader, read_message
 from crowdbot.humans import FallPose
 from crowdbot.messages import (
+    CODECS,
     COLLISIONS,
     FALL_POSES,
     FALLS,
@@ -25,6 +27,7 @@ from crowdbot.messages import (
     ContactEventRecord,
     ContactForceRecord,
     FallRecord,
+    Messages,
     decode_reading,
     read_contact_events,
     read_fall_poses,
@@ -36,6 +39,124 @@ from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
 from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ORDERS, REACTION_TOPIC, heading_of
+
+T = TypeVar("T")
+R = TypeVar("R", bound=Reading)
+UNUSED = ("/clock", "/crowd/markers")
+"""Topics that are for other tools only."""
+SCAN = "sensor_msgs/msg/LaserScan"
+
+
+class ReadingPlace(NamedTuple):
+    """Where the messages of a reading are in an episode file.
+
+    Fields:
+        path: the file.
+        name: ``robot/sensor``.
+        parts: suffix of the topic, type and place of each message.
+    """
+
+    path: Path
+    name: str
+    parts: tuple[tuple[str, str, McapPlace], ...]
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s] at which the robot received the reading."""
+        return self.parts[0][2].stamp / 1e9
+
+
+@functools.lru_cache(maxsize=8)
+def read_reading(place: ReadingPlace) -> Reading:
+    """Return a reading from its file; the latest eight are kept.
+
+    Raises:
+        EpisodeError: the file cannot be read, has changed, or its messages are damaged.
+    """
+    try:
+        found = {
+            suffix: Messages().decode_message(read_message(place.path, at), kind) for suffix, kind, at in place.parts
+        }
+        return decode_reading(found.pop(REST), found)
+    except OSError as error:
+        raise EpisodeError(f"cannot read {place.path}: {error.strerror}") from None
+    except Exception as error:  # damaged files cause many kinds of exceptions
+        raise EpisodeError(
+            f"{place.path} is damaged: reading {place.name} at {place.time:g} s:"
+            f" {type(error).__name__}: {str(error)[:80] or 'no details'}"
+        ) from error
+
+
+def read_scan(scan: ReadingPlace | ScanRow) -> ScanRow:
+    """Return a scan from its file; scans of files without records of readings are known."""
+    if isinstance(scan, ScanRow):
+        return scan
+    reading = read_reading(scan)
+    if not isinstance(reading, Scan):
+        raise EpisodeError(f"{scan.path} is damaged: reading {scan.name} at {scan.time:g} s: it is no scan")
+    return scan_row(reading)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordedSequence(Sequence[T]):
+    """Readings or scans of a sensor, each read from the file of the episode when it is asked for.
+
+    Fields:
+        places: where they are.
+        read: reads one; it raises :class:`~crowdbot.core.EpisodeError` if the file is damaged or has changed.
+    """
+
+    places: Sequence[Any]
+    read: Callable[[Any], T]
+
+    @property
+    def times(self) -> list[float]:
+        """Times [s] at which the robot received them, without reading them."""
+        return [float(place.time) for place in self.places]
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    @overload
+    def __getitem__(self, k: int) -> T: ...
+    @overload
+    def __getitem__(self, k: slice) -> RecordedSequence[T]: ...
+    def __getitem__(self, k: int | slice) -> T | RecordedSequence[T]:
+        if isinstance(k, slice):
+            return RecordedSequence(self.places[k], self.read)
+        return self.read(self.places[k])
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} readings, read when they are asked for>"
+
+
+class StepReadings(Mapping[str, T]):
+    """Readings or scans of a step by ``robot/sensor``, each read from the file when it is asked for.
+
+    Args:
+        places: where they are.
+        read: reads one, see :class:`RecordedSequence`.
+    """
+
+    def __init__(self, places: Mapping[str, Any], read: Callable[[Any], T]) -> None:
+        self.places, self.read = places, read
+
+    def __getitem__(self, name: str) -> T:
+        return self.read(self.places[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.places)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def of(self, kind: type[R]) -> Iterator[tuple[str, R]]:
+        """Yield the readings of a class by name; those with messages of other types are not read."""
+        types = [set(codec.types.values()) for cls, codec in CODECS.items() if issubclass(cls, kind)]
+        for name, place in self.places.items():
+            sent = {found for suffix, found, _ in place.parts if suffix != REST}
+            if any(sent <= known for known in types) and isinstance(reading := self[name], kind):
+                yield name, reading
 
 
 class RecordedContact(NamedTuple):
@@ -67,8 +188,8 @@ class RecordedStep:
         people: the people present, without robots; None if only readings or contacts were due.
         robots: robots by name.
         commands: commands by robot name: forward [m/s], turn [rad/s], left [m/s].
-        readings: readings by ``robot/sensor``.
-        scans: scans of planar laser scanners, by ``robot/sensor``.
+        readings: readings by ``robot/sensor``; each is read from the file when it is asked for.
+        scans: scans of planar laser scanners, by ``robot/sensor``, likewise.
         joints: position [rad or m] and velocity of joints by robot and name.
         transforms: parent frame, child frame, position [m] and rotation w, x, y, z.
         forces, collisions, falls: contact forces of this step, and contact events and falls that ended, in the
@@ -84,8 +205,8 @@ class RecordedStep:
     people: AgentStates | None = None
     robots: dict[str, RobotState] = field(default_factory=dict)
     commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
-    readings: dict[str, Reading] = field(default_factory=dict)
-    scans: dict[str, ScanRow] = field(default_factory=dict)
+    readings: StepReadings[Reading] = field(default_factory=lambda: StepReadings({}, read_reading))
+    scans: StepReadings[ScanRow] = field(default_factory=lambda: StepReadings({}, read_scan))
     joints: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
     transforms: list[tuple[str, str, tuple[float, ...]]] = field(default_factory=list)
     forces: list[ContactForceRecord] = field(default_factory=list)
@@ -103,10 +224,10 @@ class RecordedStep:
         return self.nanoseconds / 1e9
 
     def largest_ids(self) -> set[int]:
-        """Return the largest id of people in this step, if any."""
+        """Return the largest id of people in this step, if any; this reads all readings."""
         seen = [] if self.people is None else [int(self.people.ids.max(initial=-1))]
         hits = [getattr(reading, "hit", None) for reading in self.readings.values()]
-        hits += [scan.hit for scan in self.scans.values()]
+        hits += [self.scans[name].hit for name in self.scans if name not in self.readings]
         return {*seen, *(int(hit.max(initial=-1)) for hit in hits if hit is not None)}
 
     def everyone(self, robots: Mapping[str, tuple[int, float]]) -> AgentStates:
@@ -131,54 +252,97 @@ class RecordedStep:
         )
 
 
-def read_steps(tape: McapReader) -> Iterator[RecordedStep]:
-    """Yield the steps of a file.
+def read_steps(tape: McapReader, path: Path) -> Iterator[RecordedStep]:
+    """Yield the steps of a file, without their readings.
+
+    Args:
+        tape: reader of the file.
+        path: the file, for the readings.
 
     Raises:
         McapError: the file is damaged; invalid content raises other errors.
     """
-    from crowdbot.messages import Messages
-
-    messages = Messages()
+    messages, topics = Messages(), _ReadingTopics(tape)
     fixed: Poses = {}
-    for stamp, group in itertools.groupby(tape.messages(), key=lambda heard: heard.stamp):
-        decoded = [
-            (heard.topic.topic, messages.decode_message(heard.data, heard.topic.kind))
-            for heard in group
-            if heard.topic.topic != "/crowd/markers" and heard.topic.kind in messages.store.types
-        ]
-        yield _moment(stamp, decoded, fixed)
+    for stamp, group in _steps(tape, topics.is_read_later):
+        sensors = {one.topic.topic.removesuffix(REST) for one in group if one.topic.kind == KIND}
+        parts: dict[str, dict[str, tuple[str, McapPlace]]] = {topic: {} for topic in sorted(sensors)}
+        decoded = []
+        for one in group:
+            name, kind = one.topic.topic, one.topic.kind
+            sensor, suffix = topics.parts.get(name, ("", ""))
+            if sensor in sensors:
+                parts[sensor][suffix] = kind, one.place
+            elif name not in UNUSED and kind in messages.store.types:
+                decoded.append((name, messages.decode_message(one.data or read_message(path, one.place), kind)))
+        readings = {}
+        for topic, found in parts.items():
+            name = topic.strip("/")
+            readings[name] = ReadingPlace(path, name, tuple((suffix, *part) for suffix, part in found.items()))
+        yield _moment(stamp, decoded, fixed, readings)
+
+
+class _ReadingTopics:
+    """Topics of readings in a file: those of sensors that have a topic for the remaining fields."""
+
+    def __init__(self, tape: McapReader) -> None:
+        self._tape, self._known = tape, 0
+        self._suffixes = {suffix for codec in CODECS.values() for suffix in codec.types} | {REST}
+        self.parts: dict[str, tuple[str, str]] = {}
+
+    def is_read_later(self, channel: McapChannel) -> bool:
+        """Return whether the messages of a channel are parts of readings, or not used."""
+        if len(self._tape.topics) != self._known:
+            self._known = len(self._tape.topics)
+            sensors = {one.topic.removesuffix(REST) for one in self._tape.topics.values() if one.kind == KIND}
+            self.parts = {name + suffix: (name, suffix) for name in sensors for suffix in self._suffixes}
+        return channel.topic in self.parts or channel.topic in UNUSED
+
+
+def _steps(tape: McapReader, later: Callable[[McapChannel], bool]) -> Iterator[tuple[int, list[McapMessage]]]:
+    """Yield the messages of each time [ns]; those of one time may be in several chunks."""
+    waiting: dict[int, list[McapMessage]] = {}
+    chunk = None
+    for one in tape.messages(later):
+        if one.place.record is not chunk:
+            chunk = one.place.record
+            for stamp in sorted(stamp for stamp in waiting if stamp < chunk.begin):
+                yield stamp, waiting.pop(stamp)
+        waiting.setdefault(one.stamp, []).append(one)
+    for stamp in sorted(waiting):
+        yield stamp, waiting.pop(stamp)
 
 
 Poses = dict[str, tuple[str, float, float, float]]
 """Parent frame, x, y [m] and heading [rad] by frame."""
 
 
-def _moment(stamp: int, messages: list[tuple[str, Any]], fixed: Poses | None = None) -> RecordedStep:
-    moment = RecordedStep(stamp)
-    topics = dict(messages)
-    sensors = {topic.removesuffix(REST) for topic, message in messages if message.__msgtype__ == KIND}
-    for topic in sorted(sensors):
-        others = {name.removeprefix(topic): one for name, one in topics.items() if name.startswith(topic)}
-        reading = decode_reading(topics[topic + REST], others)
-        moment.readings[topic.strip("/")] = reading
-        if isinstance(reading, Scan):
-            moment.scans[topic.strip("/")] = scan_row(reading)
+def _moment(
+    stamp: int,
+    messages: list[tuple[str, Any]],
+    fixed: Poses | None = None,
+    readings: Mapping[str, ReadingPlace] | None = None,
+) -> RecordedStep:
+    readings = readings or {}
+    scans: dict[str, ReadingPlace | ScanRow] = {
+        name: place for name, place in readings.items() if any(kind == SCAN for _, kind, _ in place.parts)
+    }
+    moment = RecordedStep(stamp, readings=StepReadings(readings, read_reading), scans=StepReadings(scans, read_scan))
     fixed = {} if fixed is None else fixed
     poses: Poses = {}
     for topic, message in messages:
         if topic == "/tf_static":
-            _take(moment, fixed, topic, message, sensors)
+            _take(moment, fixed, topic, message)
             continue
-        _take(moment, poses, topic, message, sensors)
+        _take(moment, poses, topic, message)
     for topic, message in messages:
-        if message.__msgtype__ == "sensor_msgs/msg/LaserScan" and topic not in sensors:
+        if message.__msgtype__ == SCAN:
             name = topic.strip("/")
-            moment.scans[name] = _scan({**fixed, **poses}, name, moment.time, message)
+            scans[name] = _scan({**fixed, **poses}, name, moment.time, message)
     return moment
 
 
-def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any, sensors: set[str]) -> None:
+def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any) -> None:
     """Process a message that is not a reading."""
     robot = topic.strip("/").rpartition("/")[0]
     kind = message.__msgtype__
@@ -206,9 +370,8 @@ def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any, sensors:
             poses[row.child_frame_id] = row.header.frame_id, shift.x, shift.y, heading_of(turn)
             values = (shift.x, shift.y, shift.z, turn.w, turn.x, turn.y, turn.z)
             moment.transforms.append((row.header.frame_id, row.child_frame_id, values))
-    elif kind == "nav_msgs/msg/Odometry" and topic not in sensors:
-        if topic.endswith(GROUND_TRUTH):
-            moment.robots[topic.removesuffix(GROUND_TRUTH).strip("/")] = _robot(message)
+    elif kind == "nav_msgs/msg/Odometry" and topic.endswith(GROUND_TRUTH):
+        moment.robots[topic.removesuffix(GROUND_TRUTH).strip("/")] = _robot(message)
     elif kind == "sensor_msgs/msg/JointState":
         moment.joints[robot] = dict(
             zip(message.name, zip(message.position.tolist(), message.velocity.tolist(), strict=True), strict=True)

@@ -153,7 +153,9 @@ def _thinned(pixels: NDArray[Any]) -> NDArray[Any]:
 
 def _depth_index(depth: Floats, camera: Any) -> Bytes:
     """Return 0 where it is too near, 1 beyond the range, and 2 to 255 from the smallest to the largest range."""
-    share = (np.where(np.isfinite(depth), depth, 0.0) - camera.range_min) / (camera.range_max - camera.range_min)
+    share = (np.where(np.isfinite(depth), depth, 0.0).astype(np.float64) - camera.range_min) / (
+        camera.range_max - camera.range_min
+    )
     index = 2.0 + np.round(253.0 * np.clip(share, 0.0, 1.0))
     return np.where(depth == np.inf, 1.0, np.where(np.isfinite(depth), index, 0.0)).astype(np.uint8)
 

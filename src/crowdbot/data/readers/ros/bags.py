@@ -49,7 +49,7 @@ def _read_mcap(source: Source, wanted: Wanted, receive: Receive) -> Bag:
     types, bag, chosen = _Types(), Bag(), dict[McapChannel, bool]()
     with source.path.open("rb") as file:
         reader = McapReader(file)
-        for channel, _, data in reader.messages():
+        for channel, _, data, _ in reader.messages():
             if channel not in chosen:
                 chosen[channel] = wanted(channel.topic, channel.kind)
                 if chosen[channel]:
