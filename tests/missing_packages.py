@@ -14,7 +14,7 @@ import pytest
 
 REMEDY = 'pip install -c constraints.txt -e ".[dev]"'
 PACKAGES = {
-    "av", "cbor2", "cv2", "foxglove", "gymnasium", "jsonschema", "jupedsim", "lxml", "mujoco", "natnet", "onnx",
+    "av", "cbor2", "cv2", "gymnasium", "jsonschema", "jupedsim", "lxml", "mujoco", "natnet", "onnx",
     "onnxruntime", "pettingzoo", "playwright", "pylsl", "pymoo", "qi", "ray", "rclpy", "roslibpy", "segno",
     "stable_baselines3", "stonesoup", "torch", "trimesh", "vhacdx", "websockets", "yaml", "yourdfpy",
 }  # fmt: skip

@@ -154,17 +154,16 @@ def test_who_may_connect():
     server = RosbridgeServer(port=0)
     server.start(interface, Inbox(interface))
     answers = [
-        asyncio.run(connect(server.port, **options))
-        for options in ({}, {"origin": "http://localhost:8080"}, {"origin": "http://[::1]:80"})
+        asyncio.run(connect(server.port, **options)) for options in ({}, {"origin": f"http://127.0.0.1:{server.port}"})
     ]
     refused = [
         asyncio.run(connect(server.port, origin=origin))
-        for origin in ("https://evil.example", "null", "", "file://", "http://[", "http://localhost.evil.example")
+        for origin in ("https://evil.example", "null", "", "file://", "http://[", "http://localhost:8080")
     ]
     with pytest.raises(InputError, match="rosbridge cannot listen on 127.0.0.1"):
         RosbridgeServer(port=server.port).start(interface, Inbox(interface))
     server.stop()
-    assert answers == ["service_response"] * 3
+    assert answers == ["service_response"] * 2
     assert refused == [403] * 6
     server = RosbridgeServer(port=0, host="0.0.0.0", token="abc")
     server.start(interface, Inbox(interface))

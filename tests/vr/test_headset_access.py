@@ -6,8 +6,8 @@ import json
 import aiohttp
 import pytest
 
+from crowdbot.core import AccessPolicy
 from crowdbot.vr import HEADSET_COMMANDS, VR_DESKS, VrServer, session_of_token, token_of_session
-from crowdbot.web import AccessPolicy
 
 SECRET = "secret-of-the-operator"
 TRIAL = """<trial name="meet" duration="600"><stage/><crowd type="orca"/>

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from headset_messages import message
 
-from crowdbot.core import InputError
+from crowdbot.core import AccessPolicy, InputError
 from crowdbot.vr import (
     VR_DESKS,
     VrServer,
@@ -23,7 +23,6 @@ from crowdbot.vr import (
     tls_context,
     token_of_session,
 )
-from crowdbot.web import AccessPolicy
 
 TRIAL = """<trial name="meet" duration="600"><stage/><crowd type="orca"/>{avatar}
 <agent x="4" y="1.2" goal="-5,1.2"/><end collision="false"/></trial>"""

@@ -11,10 +11,9 @@ import aiohttp
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError
+from crowdbot.core import AccessPolicy, InputError
 from crowdbot.web import (
     CREDIT,
-    AccessPolicy,
     AppServer,
     Desk,
     Resource,

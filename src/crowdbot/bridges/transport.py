@@ -74,7 +74,8 @@ TRANSPORTS: dict[str, tuple[str, str]] = {
 }
 """Module and function of each transport, relative to this room, and a line for people.
 
-The function takes the text after the name, and options of the command line by name (``host``, ``token``, ``topics``).
+The function takes the text after the name, and options of the command line by name (``host``, ``token``, ``topics``,
+``origins``).
 """
 
 

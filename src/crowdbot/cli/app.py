@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.core import PROGRAMS, InputError
+from crowdbot.core import PROGRAMS, InputError, is_loopback
 
 if TYPE_CHECKING:
     from crowdbot.vr import VrServer
@@ -116,7 +116,7 @@ def _stream_arguments(parser: CommandParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Serve until Ctrl-C."""
     from crowdbot.vr import VR_DESKS, VrServer, with_captures
-    from crowdbot.web import is_loopback, opened_first, with_streams
+    from crowdbot.web import opened_first, with_streams
 
     if not 0 <= options.port <= 65535:
         raise InputError(f"--port = {options.port}: expected 0 to 65535")
@@ -151,7 +151,7 @@ def main(options: argparse.Namespace) -> int:
 
 def _limits(options: argparse.Namespace, host: str) -> SessionLimits:
     """Return the limits of each session: those of the place, with the options that are given."""
-    from crowdbot.web import CLASSROOM, SessionLimits, is_loopback
+    from crowdbot.web import CLASSROOM, SessionLimits
 
     if options.sessions < 1:
         raise InputError(f"--sessions = {options.sessions}: expected at least 1")

@@ -60,6 +60,7 @@ from .version import source_digest
 from .walls import Walls
 
 if TYPE_CHECKING:
+    from .access import AccessPolicy, is_loopback
     from .compiling import notify_compiling
     from .kernels import cache_folder, cache_root, is_cold, kernel, prange
     from .markup.gltf import MOST_PARTS, MOST_TRIANGLES, GltfFile, check_gltf_table, glb_table, read_gltf, table_rows
@@ -92,6 +93,7 @@ __all__ = [
     "SMALL",
     "STAGE",
     "WALL_COLOR",
+    "AccessPolicy",
     "Bodies",
     "Bounds",
     "Clock",
@@ -150,6 +152,7 @@ __all__ = [
     "hash_start",
     "import_optional",
     "is_cold",
+    "is_loopback",
     "kebab_case",
     "kernel",
     "lock_file",

@@ -228,7 +228,7 @@ class VrServer(AppServer):
         found = super()._refusal(request)
         if found is None or not self._opens_headset(request):
             return found
-        return self.access.refusal(request.host, request.headers.get("Origin"), self.access.token)
+        return self.access.refusal(request.headers.get("Host"), request.headers.get("Origin"), self.access.token)
 
     def _cookie(self, request: web.Request) -> str:
         return HEADSET_COOKIE if self._opens_headset(request) else super()._cookie(request)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
-    from .access import AccessPolicy, is_loopback
     from .app_server import AppServer
     from .app_session import AppSession, Viewer
     from .command import call_command, command, command_names
@@ -35,7 +34,6 @@ __all__ = [
     "CLASSROOM",
     "CREDIT",
     "DESKS",
-    "AccessPolicy",
     "AppServer",
     "AppSession",
     "Desk",
@@ -56,7 +54,6 @@ __all__ = [
     "call_command",
     "command",
     "command_names",
-    "is_loopback",
     "navigator_orders",
     "opened_first",
     "scene_description",

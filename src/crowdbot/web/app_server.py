@@ -13,9 +13,8 @@ from typing import ClassVar
 
 from aiohttp import WSCloseCode, web
 
-from crowdbot.core import CrowdbotError, InputError
+from crowdbot.core import AccessPolicy, CrowdbotError, InputError
 
-from .access import COOKIE, AccessPolicy
 from .app_session import AppSession
 from .desk import Desk
 from .desk_thread import DeskThread
@@ -23,6 +22,8 @@ from .session_limits import CLASSROOM, SessionLimits
 from .window import Window
 from .workspace import SESSIONS, Workspace
 
+COOKIE = "crowdbot-token"
+"""Name of the cookie that holds the token after the first page."""
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
     "connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -197,7 +198,7 @@ class AppServer:
         token = request.query.get("token") or request.cookies.get(COOKIE)
         if self.access.needs_token and token and self.access.opens(token, request.path):
             token = self.access.token
-        return self.access.refusal(request.host, request.headers.get("Origin"), token)
+        return self.access.refusal(request.headers.get("Host"), request.headers.get("Origin"), token)
 
     def session_address(self, session: str) -> str:
         """Return the address of the page of a session; its token, if one is needed, opens this session only."""

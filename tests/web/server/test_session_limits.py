@@ -10,11 +10,11 @@ from job_functions import count
 
 from crowdbot.bridges.stack_link import StackProgram
 from crowdbot.cli import main
-from crowdbot.core import PROGRAMS, InputError
+from crowdbot.core import PROGRAMS, AccessPolicy, InputError
 from crowdbot.navigation import ProcessNavigator
 from crowdbot.simulation import RunFailureWarning, simulate
 from crowdbot.trials import load_trial
-from crowdbot.web import CLASSROOM, AccessPolicy, AppServer, Desk, SessionLimits, Workspace, command
+from crowdbot.web import CLASSROOM, AppServer, Desk, SessionLimits, Workspace, command
 from crowdbot.web.jobs import JobWork
 
 

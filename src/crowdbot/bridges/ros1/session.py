@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import hashlib
-import ipaddress
 import os
 import struct
 import xmlrpc.client
@@ -26,7 +25,7 @@ from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import STATE, InputTopic, OutputTopic, RobotInterface
 from crowdbot.bridges.run_control import QUITTING
 from crowdbot.bridges.simulation_services import PLAIN_SERVICES, PlainService
-from crowdbot.core import InputError
+from crowdbot.core import InputError, is_loopback
 from crowdbot.messages import Messages, Ros1Messages
 
 DEFAULT = "http://localhost:11311"
@@ -658,7 +657,7 @@ class Ros1Session:
         Raises:
             InputError: there is no master.
         """
-        listen = self.host if _is_loopback(self.host) else "0.0.0.0"  # noqa: S104, ROS 1 nodes connect to each other
+        listen = self.host if is_loopback(self.host) else "0.0.0.0"  # noqa: S104, ROS 1 nodes connect to each other
         await self._api.open(listen)
         self._server = await asyncio.start_server(self._accept, listen, 0)
         self._port = int(self._server.sockets[0].getsockname()[1])
@@ -828,12 +827,3 @@ async def _wait_for_end(reader: asyncio.StreamReader) -> None:
     with contextlib.suppress(OSError):
         while await reader.read(1024):
             pass
-
-
-def _is_loopback(host: str) -> bool:
-    if host == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False

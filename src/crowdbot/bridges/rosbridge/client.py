@@ -15,10 +15,11 @@ import aiohttp
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
+from crowdbot.bridges.socket_server import MOST_TEXT
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
-from .frames import MOST_TEXT, FrameReader, OutgoingMessage, dump_json, field
+from .frames import FrameReader, OutgoingMessage, dump_json, field
 from .session import Subscription
 
 LEFT_OUT = ("*/reading", "*/labels")

@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from crowdbot.bridges.fields import fields_of, plain_fields
+from crowdbot.bridges.socket_server import MOST_TEXT
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
-MOST_TEXT = 4 << 20
-"""Largest size of a frame, and of all waiting fragments of a client [characters]: a camera image fits."""
 DEEPEST = 40
 """Largest depth of a frame."""
 MOST_PARTS, MOST_MESSAGES = 10_000, 16

@@ -136,11 +136,14 @@ class ClientSession:
         self._turn: deque[str] = deque()
         graph.sessions.append(self)
 
-    def handle(self, text: str) -> None:
+    def handle(self, data: str | bytes) -> None:
         """Do what a frame of the client asks."""
+        if isinstance(data, bytes):
+            self.refuse("a frame from a client must be text")
+            return
         frame: Frame | None = None
         try:
-            frame = self._reader.read(text)
+            frame = self._reader.read(data)
             if frame is not None:
                 self._operate(frame)
         except InputError as error:

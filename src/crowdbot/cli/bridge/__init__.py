@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import note, print_warnings
 
@@ -43,6 +43,12 @@ def add_bridge(parser: CommandParser) -> None:
         "--bridge-topics",
         metavar="PATTERNS",
         help="topics and services that clients may use, separated by commas, such as '/robot/*,/tf' (default: all)",
+    )
+    group.add_argument(
+        "--bridge-origins",
+        metavar="ORIGINS",
+        help="pages that may connect without the token, separated by commas, such as 'https://app.foxglove.dev'"
+        " (default: none)",
     )
 
 
@@ -85,10 +91,11 @@ def open_bridges(options: argparse.Namespace) -> list[Transport]:
     """
     from crowdbot.bridges import open_transport
 
-    given = {"host": options.bridge_host, "token": options.bridge_token, "topics": options.bridge_topics}
-    values = {key: value for key, value in given.items() if value is not None}
-    if "topics" in values:
-        values["topics"] = [one.strip() for one in values["topics"].split(",") if one.strip()]
+    given = {"host": options.bridge_host, "token": options.bridge_token}
+    values: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
+    for name, text in (("topics", options.bridge_topics), ("origins", options.bridge_origins)):
+        if text is not None:
+            values[name] = [one.strip() for one in text.split(",") if one.strip()]
     return [open_transport(text, values) for text in options.bridge]
 
 
@@ -96,6 +103,6 @@ def check_bridge_options(options: argparse.Namespace) -> None:
     """Raise :class:`InputError` if options of bridges are given without a bridge."""
     from crowdbot.core import InputError
 
-    for name in ("clock", "bridge_host", "bridge_token", "bridge_topics"):
+    for name in ("clock", "bridge_host", "bridge_token", "bridge_topics", "bridge_origins"):
         if getattr(options, name) is not None:
             raise InputError(f"--{name.replace('_', '-')} needs --bridge")
