@@ -26,6 +26,20 @@ test("a command reaches an open socket and is answered", async () => {
   assert.equal(await answer, 7);
 });
 
+test("the server is told which channels are shown, at each connection and once", () => {
+  const connection = new Connection("main");
+  let shown = false;
+  connection.draw("scene", () => {});
+  connection.draw("trial", () => {}, () => shown);
+  connection.tellWants();
+  shown = true;
+  connection.tellWants();
+  assert.deepEqual(FakeSocket.last.sent, [{ wants: ["scene"] }, { wants: ["scene", "trial"] }]);
+  connection._connect();
+  FakeSocket.last.onopen();
+  assert.deepEqual(FakeSocket.last.sent, [{ wants: ["scene", "trial"] }]);
+});
+
 test("nothing is sent to a socket that closes", async () => {
   const connection = new Connection("main");
   FakeSocket.last.readyState = 2;

@@ -151,7 +151,7 @@ def test_the_tab_of_the_operator_stops_a_linked_robot_of_the_simulator(tmp_path)
     navigator = '<navigator type="real-robot" driver="straight" parameters="speed=0.4"/>'
     with open_session(tmp_path / "files", {"meet.xml": TRIAL.format(duration=300, navigator=navigator)}) as session:
         simulator, vr = session.desk("simulator"), session.desk("vr")
-        simulator.greet()
+        simulator.visit({})
         guest = Headset(vr)
         vr.set({"timeout": 8.0, "pause_when_lost": False})
         until(lambda: guest.person.summary()["steps"] > 3)

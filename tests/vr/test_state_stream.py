@@ -30,7 +30,7 @@ class Windows:
     def show(self, frame):
         self.frames.append(frame)
 
-    def is_ready(self):
+    def is_ready(self, channel=None):
         return True
 
 

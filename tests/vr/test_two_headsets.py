@@ -21,7 +21,7 @@ def place(person):
 def test_each_headset_has_its_own_avatar_and_room(tmp_path):
     with open_session(tmp_path / "files", {"meet.xml": TRIAL}) as session:
         vr = session.desk("vr")
-        session.desk("simulator").greet()
+        session.desk("simulator").visit({})
         vr.set({"timeout": 8.0, "pause_when_lost": False})
         one = Headset(vr)
         two = Headset(vr)

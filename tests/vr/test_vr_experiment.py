@@ -80,7 +80,7 @@ def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     (folder / "meet.xml").write_text(TRIAL.format(duration=300))
     desk, vr = session.desk("experiments"), session.desk("vr")
     vr.set({"timeout": 3.0})
-    session.desk("simulator").greet()  # a window opens the first trial
+    session.desk("simulator").visit({})  # a window opens the first trial
     guest = Headset(vr)  # in the trial of the simulator first
     desk.open("visit.xml", 1)
     until(lambda: vr.state()["experiment"])

@@ -30,13 +30,13 @@ def browser():
 
 
 @contextlib.contextmanager
-def serve(folder, desks=DESKS, kind=AppServer, **options):
+def serve(folder, desks=DESKS, kind=AppServer, port=0, **options):
     """Run the app in a thread and give its server."""
     ready, box = threading.Event(), {}
 
     async def main():
         box["loop"], box["stop"] = asyncio.get_running_loop(), asyncio.Event()
-        async with kind(desks, folder, port=0, **options).running() as server:
+        async with kind(desks, folder, port=port, **options).running() as server:
             box["server"] = server
             ready.set()
             await box["stop"].wait()

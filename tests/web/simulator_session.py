@@ -23,7 +23,7 @@ class Windows:
     def show(self, frame):
         self.frames = [*self.frames[-50:], frame]
 
-    def is_ready(self):
+    def is_ready(self, channel=None):
         return self.is_open
 
     def latest(self, event):

@@ -89,7 +89,7 @@ def test_people_walk_before_the_simulation_is_prepared_and_it_goes_on_there(tmp_
 
     monkeypatch.setattr(live_run, "open_run", late)
     with simulator(tmp_path) as desk:
-        desk.greet()
+        desk.visit({})
         wait_until(lambda: len(desk.session.frames) > 3)
         status = desk._status()
         assert (status["state"], status["recorded"]) == ("preparing", True)
@@ -114,7 +114,7 @@ def test_people_walk_before_the_simulation_is_prepared_and_it_goes_on_there(tmp_
 def test_a_run_that_is_ready_late_is_shown_from_its_start(tmp_path, monkeypatch):
     monkeypatch.setattr(live_run, "SEAMLESS", 0.0)
     with simulator(tmp_path) as desk:
-        desk.greet()
+        desk.visit({})
         ready(desk)
         assert desk._player.running.simulation.world.times[0] < 5.0
         assert desk._status()["state"] == "running"

@@ -212,6 +212,35 @@ def test_a_slow_window_gets_the_newest_frame_and_never_more_than_its_credit(tmp_
 
 
 @pytest.mark.live
+def test_a_window_gets_the_channels_that_it_shows_and_desks_know_it(tmp_path):
+    async def burst(socket, ready, wants=None):
+        if wants is not None:
+            await socket.send_json({"wants": wants})
+        await ask(socket, "counter.add")
+        await socket.send_json({"id": 7, "call": "counter.burst", "args": {"count": 1}})
+        kinds = set()
+        while (message := await socket.receive()).type == aiohttp.WSMsgType.BINARY or "7" not in message.data:
+            kinds.add(message.type)
+            if message.type == aiohttp.WSMsgType.BINARY:
+                await socket.send_json({"drawn": StateFrame.decode(message.data).sequence})
+        return aiohttp.WSMsgType.BINARY in kinds, ready("count"), ready("other"), ready()
+
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            ready = server.sessions["main"].is_ready
+            found = [await burst(socket, ready, wants) for wants in (None, ["other"], [], ["count", "other"])]
+            await socket.send_json({"wants": "count"})
+            while (message := await socket.receive()).type in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY):
+                pass
+            return found, message.type
+
+    found, closed = serve(tmp_path, talk)
+    assert [sent for sent, *_ in found] == [True, False, False, True]
+    assert found[1:3] == [(False, False, True, True), (False, False, False, False)]
+    assert closed in (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED)
+
+
+@pytest.mark.live
 def test_files_of_desks_and_of_the_page(tmp_path):
     async def talk(server, client):
         answers = []

@@ -163,7 +163,7 @@ def test_errors_of_a_trial_are_those_of_check(tmp_path):
 @pytest.mark.live
 def test_a_new_window_gets_the_state_and_the_history(tmp_path):
     with simulator(tmp_path) as desk:
-        desk._greeted = True  # no first trial
+        desk._visited = True  # no first trial
         opened(desk, paused=False)
         wait_until(lambda: len(desk._history) > 3)
         desk.pause()

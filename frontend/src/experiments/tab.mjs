@@ -23,7 +23,7 @@ class ExperimentsTab {
     fill(root, this.screen, this.participant ? null : this.side);
     app.connection.on("experiments.state", (state) => this.update(state));
     app.connection.on("experiments.progress", (share) => this.progress(share));
-    app.connection.draw("trial", (frame) => this.trial.take(frame));
+    app.connection.draw("trial", (frame) => this.trial.take(frame), () => this.trial.visible);
   }
 
   async call(command, args = {}) {
@@ -187,6 +187,11 @@ export const experiments = {
   title: "Experiments",
   mount(root, app) {
     const tab = new ExperimentsTab(root, app);
-    return { tab, greet: (state) => tab.update(state) };
+    return {
+      tab,
+      greet: (state) => tab.update(state),
+      show: () => (tab.trial.shown = true),
+      hide: () => (tab.trial.shown = false),
+    };
   },
 };

@@ -7,10 +7,12 @@ export class Connection extends EventTarget {
   /**
    * @param {string} session name of the session
    * @param {string} socket name of the socket of the server
+   * @param {() => object} query values for the server, at each connection
    */
-  constructor(session, socket = "socket") {
+  constructor(session, socket = "socket", query = () => ({})) {
     super();
     this._name = socket;
+    this._query = query;
     this.session = session;
     this._calls = new Map();
     this._frames = new Map();
@@ -41,9 +43,21 @@ export class Connection extends EventTarget {
     return () => this.removeEventListener(event, wrap);
   }
 
-  /** Sets the function that draws the frames of a channel; it may return a promise. */
-  draw(channel, listener) {
-    this._frames.set(channel, listener);
+  /**
+   * Sets the function that draws the frames of a channel; it may return a promise. The server sends the frames of channels
+   * that are drawn and shown; `shown()` is asked at each call of `tellWants`.
+   */
+  draw(channel, listener, shown = () => true) {
+    this._frames.set(channel, { listener, shown });
+    this.tellWants();
+  }
+
+  /** Tells the server which channels are shown, if this has changed. */
+  tellWants() {
+    const wants = [...this._frames].filter(([, one]) => one.shown()).map(([channel]) => channel);
+    if (!this.open || wants.join() === this._wants) return;
+    this._wants = wants.join();
+    this._socket.send(JSON.stringify({ wants }));
   }
 
   /** Address of a file of a desk. */
@@ -55,10 +69,13 @@ export class Connection extends EventTarget {
   _connect() {
     const url = new URL(`api/${this.session}/${this._name}`, location.href);
     url.protocol = url.protocol.replace("http", "ws");
+    url.search = new URLSearchParams(this._query());
     const socket = new WebSocket(url);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this._failures = 0;
+      this._wants = null;
+      this.tellWants();
       this._emit("connected");
     };
     socket.onmessage = (message) => this._receive(message.data);
@@ -70,7 +87,7 @@ export class Connection extends EventTarget {
     if (typeof data !== "string") {
       const frame = decodeFrame(data);
       try {
-        await this._frames.get(frame.channel)?.(frame);
+        await this._frames.get(frame.channel)?.listener(frame);
       } finally {
         if (this.open) this._socket.send(JSON.stringify({ drawn: frame.sequence }));
       }

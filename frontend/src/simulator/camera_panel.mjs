@@ -4,6 +4,7 @@ import { fill, h } from "../ui/dom.mjs";
 
 export class CameraPanel {
   constructor(app, picture) {
+    this.picture = picture;
     this.app = app;
     this.figures = new ImageFigures((name) => this._toggle(name, false));
     this.boxes = h("fieldset", { class: "choice cameras", hidden: true });
@@ -32,7 +33,7 @@ export class CameraPanel {
   loaded({ images = [], revision }) {
     this._images = images;
     this._revision = revision;
-    images.forEach((one, number) => this.app.connection.draw(`cam${number}`, (frame) => this._draw(one.name, frame)));
+    images.forEach((one, number) => this.app.connection.draw(`cam${number}`, (frame) => this._draw(one.name, frame), () => this.picture.visible));
     this._show();
   }
 

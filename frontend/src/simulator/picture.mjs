@@ -26,6 +26,7 @@ export class Picture {
     this._loading = null;
     this._awake = 0;
     this._shown = true;
+    this._seen = this.visible;
     this.place = h("div", { class: "stage-place" });
     this.overlay = h("canvas", { class: "preview", "aria-hidden": "true", hidden: true });
     this.note = h("p", { class: "picture-note", role: "status" });
@@ -37,7 +38,7 @@ export class Picture {
 
   /** Takes a frame of the channel "scene"; the promise is kept until it is drawn. */
   take(frame) {
-    if (!this._shown || !this.scene) return undefined;
+    if (!this.visible || !this.scene) return undefined;
     this._finish();
     this.motion.push(frame, performance.now());
     return new Promise((resolve) => {
@@ -80,10 +81,26 @@ export class Picture {
     return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
   }
 
+  /** Whether it is seen: its tab is shown, and the page is not hidden behind another window or page of the browser. */
+  get visible() {
+    return this._shown && !document.hidden;
+  }
+
   set shown(shown) {
     this._shown = shown;
-    if (!shown) this._finish();
+    this._turn();
+  }
+
+  /** Gets the frames of the server while it is seen, beginning with the present one. */
+  _turn() {
+    const { connection } = this.app;
     this.wake();
+    if (this.visible === this._seen) return;
+    this._seen = this.visible;
+    connection.tellWants();
+    this.forget();
+    if (this._seen) connection.call(`${this.desk}.show_frame`).catch(() => {});
+    else this._finish();
   }
 
   /** Draws for a while, because the camera moves. */
@@ -126,6 +143,7 @@ export class Picture {
       this.scene?.setTheme(event.detail);
       this.wake();
     });
+    document.addEventListener("visibilitychange", () => this._turn());
     new ResizeObserver(() => this.wake()).observe(this.element);
   }
 

@@ -15,6 +15,8 @@ import { ViewLink } from "./view_link.mjs";
 
 const SUMMARY = 5000;
 const PING = 2000;
+/** Time [ms] after which a change of the run is in the address. */
+const ADDRESS = 500;
 /** Longest time [ms] that the lists wait for the first picture. */
 const LATER = 700;
 
@@ -51,6 +53,8 @@ class SimulatorView {
 
   /** Takes the state of the server, when the page opens or connects again. */
   greet(state) {
+    if (this.status.orders && ["none", "preparing"].includes(state.status.state))
+      say(`The server was started again: the run comes from its seed and its values, without the ${this.status.orders} orders that were given.`);
     this.plots.know(state.plots);
     this.display.predicts(state.predictor);
     this.display.images.take(state.cameras);
@@ -118,7 +122,7 @@ class SimulatorView {
       this.plots.begin([]);
       this._take(status);
     });
-    connection.draw("scene", (frame) => this.picture.take(frame));
+    connection.draw("scene", (frame) => this.picture.take(frame), () => this.picture.visible);
     connection.on("lost", () => this.drive.subject && this.drive.forget());
   }
 
@@ -127,6 +131,7 @@ class SimulatorView {
     this.picture.forget();
     this.picture.preview(status.state === "preparing" ? source.preview ?? null : null);
     this.library.mark(source.name);
+    this._remember(status);
     const live = source.kind === "run";
     this.tools.live = this.inspector.live = this.values.live = live;
     this.episode.element.hidden = live || !source.kind;
@@ -142,6 +147,7 @@ class SimulatorView {
     this.transport.show(status);
     this.plots.take(status);
     this._showLine();
+    this._remembering ??= setTimeout(() => this._remember(this.status), ADDRESS);
     if (status.problems?.length && status.problems.join() !== before.problems?.join()) say(status.problems.join("\n"), "error");
     if (status.state === "preparing") this.picture.say(preparation(status));
     else if (before.state === "preparing" || status.state === "failed") this.picture.say("");
@@ -154,6 +160,24 @@ class SimulatorView {
       await attempt(() => this._showEpisode());
     }
     if (this.inspector.element.open) this.inspector.update();
+  }
+
+  /** Writes what is open, and its time, into the address; a server that is started again opens it from there. */
+  _remember({ state, time }) {
+    clearTimeout(this._remembering);
+    this._remembering = null;
+    const { kind, name, seed, variant, settings } = this.source;
+    if (!kind) return;
+    const run = kind === "run";
+    const open = {
+      trial: run ? name : null, episode: run ? null : name, seed: run ? seed : null,
+      variant: variant > 1 ? variant : null, values: run && Object.keys(settings).length ? JSON.stringify(settings) : null,
+    };
+    if (["running", "paused", "ended"].includes(state))
+      Object.assign(open, { time: Number(time.toFixed(2)), paused: state === "paused" ? "yes" : null });
+    else if (!Object.entries(open).every(([key, value]) => this.app.address.get(key) === (value === null ? null : String(value))))
+      Object.assign(open, { time: null, paused: null }); // another run, which is still prepared
+    this.app.remember(open);
   }
 
   async _showEpisode() {
@@ -275,5 +299,6 @@ class SimulatorView {
 export const simulator = {
   name: "simulator",
   title: "Simulator",
+  opens: ["trial", "seed", "variant", "values", "episode", "time", "paused"],
   mount: (root, app) => new SimulatorView(root, app),
 };

@@ -5,12 +5,16 @@ import { fill, h } from "./dom.mjs";
 import { Keys, keyName } from "./keys.mjs";
 
 export class App {
-  /** @param {Array} tabs modules with {name, title, mount(root, app, state)}; mount returns {show?, hide?, greet?} */
+  /**
+   * @param {Array} tabs modules with {name, title, opens?, mount(root, app)}: `opens` names the values of the address from
+   *   which a server that shows nothing yet opens something; mount returns {show?, hide?, greet?}, and greet takes the
+   *   present state of the server, at each connection and when the tab is mounted later
+   */
   constructor(root, tabs) {
     this.tabs = tabs;
     this.keys = new Keys();
     this.address = new URLSearchParams(location.hash.slice(1));
-    this.connection = new Connection(this.address.get("session") ?? "main");
+    this.connection = new Connection(this.address.get("session") ?? "main", "socket", () => this._opened());
     this._views = new Map();
     this._layout(root);
     this._listen();
@@ -35,7 +39,7 @@ export class App {
     }
     if (!this._views.has(tab.name)) {
       this._views.set(tab.name, tab.mount(this._panels.get(tab.name), this));
-      if (this._greeting) this._views.get(tab.name).greet?.(this._greeting.desks[tab.name] ?? {});
+      this._greet(tab.name);
     }
     this.keys.active = tab.name;
     this.remember({ tab: tab.name });
@@ -63,6 +67,19 @@ export class App {
       else this.address.set(name, String(value));
     }
     history.replaceState(null, "", `#${this.address}`);
+  }
+
+  /** The part of the address that names what the server opens. */
+  _opened() {
+    const names = this.tabs.flatMap((one) => one.opens ?? []);
+    return Object.fromEntries([...this.address].filter(([name]) => names.includes(name)));
+  }
+
+  /** Hands the present state of the server to a tab that was mounted after the greeting of the connection. */
+  async _greet(name) {
+    if (!this._desks) return;
+    const state = this._desks.has(name) ? await attempt(() => this.connection.call(`${name}.greet`)) : {};
+    if (state) this._views.get(name).greet?.(state);
   }
 
   /** "dark" or "light". */
@@ -105,11 +122,14 @@ export class App {
 
   _listen() {
     this.connection.on("connected", () => this._tellConnection("connected", ""));
-    this.connection.on("lost", () => this._tellConnection("not connected, trying again", "lost"));
-    this.connection.on("hello", (greeting) => {
-      this._greeting = greeting;
-      if (greeting.desks.jobs) this._countJobs(greeting.desks.jobs);
-      for (const [name, view] of this._views) view.greet?.(greeting.desks[name] ?? {});
+    this.connection.on("lost", () => {
+      this._desks = null;
+      this._tellConnection("not connected, trying again", "lost");
+    });
+    this.connection.on("hello", ({ desks }) => {
+      this._desks = new Set(Object.keys(desks));
+      if (desks.jobs) this._countJobs(desks.jobs);
+      for (const [name, view] of this._views) view.greet?.(desks[name] ?? {});
     });
     this.connection.on("jobs.state", (state) => this._countJobs(state));
   }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import re
 import ssl
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
@@ -223,9 +224,11 @@ class AppServer:
         return response
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        return await self._serve_window(request, Window)
+        return await self._serve_window(request, functools.partial(Window, address=dict(request.query)))
 
-    async def _serve_window(self, request: web.Request, kind: type[Window]) -> web.StreamResponse:
+    async def _serve_window(
+        self, request: web.Request, kind: Callable[[AppSession, web.WebSocketResponse], Window]
+    ) -> web.StreamResponse:
         """Serve a window of a kind until it is closed."""
         session = self._session(request)
         if len(self._sockets) >= WINDOWS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
 from crowdbot.core import InputError, did_you_mean
@@ -28,8 +28,8 @@ class Viewer(Protocol):
     def show(self, frame: StateFrame) -> None:
         """Send a state frame."""
 
-    def is_ready(self) -> bool:
-        """Return whether the window has drawn what was sent."""
+    def is_ready(self, channel: str | None = None) -> bool:
+        """Return whether the window shows a channel, or any, and has drawn what was sent."""
 
 
 class AppSession:
@@ -78,9 +78,14 @@ class AppSession:
         return self.desks[name]
 
     async def call(self, address: str, arguments: dict[str, Any]) -> Any:
-        """Call the command ``desk.command`` in the thread of its desk and return its result."""
+        """Call the command ``desk.command`` in the thread of its desk and return its result.
+
+        ``desk.greet`` returns the present state of a desk, also while its thread is busy.
+        """
         name, _, command = address.partition(".")
         desk = self.desk(name)
+        if command == "greet" and not arguments:
+            return desk.greet()
         return await asyncio.wrap_future(self._threads[name].call(call_command, desk, command, arguments))
 
     async def resource(self, name: str, path: str, query: dict[str, str]) -> Resource:
@@ -96,8 +101,10 @@ class AppSession:
             self.used = time.monotonic()
         return time.monotonic() - self.used
 
-    def greet(self) -> dict[str, Any]:
-        """Return the state of all desks for a new window."""
+    def greet(self, address: Mapping[str, str]) -> dict[str, Any]:
+        """Return the state of all desks for a new window, whose page has an address with these values."""
+        for desk in self.desks.values():
+            desk.visit(address)
         return {name: desk.greet() for name, desk in self.desks.items()}
 
     def tell(self, event: str, data: Any) -> None:
@@ -115,9 +122,9 @@ class AppSession:
         if not waits:
             self._do(self._send_latest)
 
-    def is_ready(self) -> bool:
-        """Return whether a window could take a frame now, from any thread."""
-        return any(window.is_ready() for window in tuple(self.windows))
+    def is_ready(self, channel: str | None = None) -> bool:
+        """Return whether a window could take a frame of a channel, or of any, now; from any thread."""
+        return any(window.is_ready(channel) for window in tuple(self.windows))
 
     def _tell_windows(self, event: str, data: Any) -> None:
         for window in self.windows:

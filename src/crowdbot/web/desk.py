@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -31,8 +31,11 @@ class DeskWindows(Protocol):
     def show(self, frame: StateFrame) -> None:
         """Send a state frame to all windows, from any thread; a slow window gets the newest of each channel."""
 
-    def is_ready(self) -> bool:
-        """Return whether a window could take a frame now; otherwise computing one is of no use. From any thread."""
+    def is_ready(self, channel: str | None = None) -> bool:
+        """Return whether a window could take a frame of a channel, or of any, now. From any thread.
+
+        Otherwise computing one is of no use: the windows are busy, or show something else, or are hidden.
+        """
 
 
 class Resource:
@@ -68,8 +71,20 @@ class Desk:
     def __init__(self, session: DeskWindows) -> None:
         self.session = session
 
+    def visit(self, address: Mapping[str, str]) -> None:
+        """Open what the address of a page names, if nothing is open; called before :meth:`greet` of a new window.
+
+        Called in the event loop, so it starts a thread for what takes long.
+
+        Args:
+            address: values of the address of the page, from the browser; empty for other windows.
+        """
+
     def greet(self) -> dict[str, Any]:
-        """Return the state that a new window needs, JSON."""
+        """Return the present state, JSON, for a new window and for a tab that is opened later.
+
+        Called in the event loop, so it waits for nothing.
+        """
         return {}
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:

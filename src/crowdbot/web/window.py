@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +20,8 @@ CREDIT = 2
 """State frames that may be on their way to a window at the same time."""
 EVENTS = 1000
 """Events that may wait for a window; a window that is further behind is closed and connects again."""
+CHANNELS = 64
+"""Channels that a window can name."""
 CALLS = 32
 """Commands of one window that may run at the same time."""
 
@@ -29,17 +32,22 @@ class Window:
     Text messages are JSON; numbers that are not finite are null. The window calls commands with
     ``{"id": 1, "call": "desk.command", "args": {...}}`` and gets ``{"id": 1, "result": ...}`` or
     ``{"id": 1, "error": "sentence"}``. It confirms each state frame with ``{"drawn": sequence}``; no more than two
-    unconfirmed frames are sent, so that a slow window sees the newest state and never slows the run.
+    unconfirmed frames are sent, so that a slow window sees the newest state and never slows the run. A window gets the
+    frames of all channels, or from ``{"wants": [channel, ...]}`` on only those that it names.
 
     Args:
         session: the session that the window shows.
         socket: the open WebSocket.
+        address: values of the address of the page, from which a desk opens what it names.
     """
 
-    def __init__(self, session: AppSession, socket: web.WebSocketResponse) -> None:
-        self.session, self._socket = session, socket
+    def __init__(
+        self, session: AppSession, socket: web.WebSocketResponse, address: Mapping[str, str] | None = None
+    ) -> None:
+        self.session, self._socket, self._address = session, socket, address or {}
         self._sent = self._drawn = 0
         self._frames: dict[str, StateFrame] = {}
+        self._wants: frozenset[str] | None = None
         self._events: list[str] = []
         self._wake = asyncio.Event()
         self._calls: set[asyncio.Task[None]] = set()
@@ -50,19 +58,25 @@ class Window:
 
     def show(self, frame: StateFrame) -> None:
         """Send a frame when the window has drawn the frames before; replaces one of the same channel that waits."""
-        self._frames[frame.channel] = frame
-        self._wake.set()
+        if self.wants(frame.channel):
+            self._frames[frame.channel] = frame
+            self._wake.set()
 
-    def is_ready(self) -> bool:
-        """Return whether a frame would be sent at once."""
-        return self._sent - self._drawn < CREDIT and not self._frames
+    def wants(self, channel: str) -> bool:
+        """Return whether the window shows a channel; a page that is hidden shows none."""
+        return self._wants is None or channel in self._wants
+
+    def is_ready(self, channel: str | None = None) -> bool:
+        """Return whether a frame of a channel, or of any, would be sent at once."""
+        wanted = self._wants != frozenset() if channel is None else self.wants(channel)
+        return wanted and self._sent - self._drawn < CREDIT and not self._frames
 
     async def serve(self) -> None:
         """Exchange messages until the window is closed."""
         writer = asyncio.create_task(self._write())
         self.session.windows.add(self)
         try:
-            self.tell("hello", {"session": self.session.name, "desks": self.session.greet()})
+            self.tell("hello", {"session": self.session.name, "desks": self.session.greet(self._address)})
             async for message in self._socket:
                 if message.type != WSMsgType.TEXT:
                     break
@@ -87,6 +101,8 @@ class Window:
             self._drawn = max(self._drawn, min(message["drawn"], self._sent))
             self._wake.set()
             return True
+        if "wants" in message:
+            return self._choose(message["wants"])
         address, arguments, number = message.get("call"), message.get("args", {}), message.get("id")
         if not isinstance(address, str) or not isinstance(arguments, dict) or not isinstance(number, int):
             return False
@@ -96,6 +112,13 @@ class Window:
         task = asyncio.create_task(self._call(number, address, arguments))
         self._calls.add(task)
         task.add_done_callback(self._calls.discard)
+        return True
+
+    def _choose(self, wants: Any) -> bool:
+        if not isinstance(wants, list) or len(wants) > CHANNELS or not all(isinstance(one, str) for one in wants):
+            return False
+        self._wants = frozenset(wants)
+        self._frames = {name: frame for name, frame in self._frames.items() if name in self._wants}
         return True
 
     async def _call(self, number: int, address: str, arguments: dict[str, Any]) -> None:

@@ -45,6 +45,7 @@ class LiveRun:
         tell: called in the thread of the run when the status has changed.
         paused: whether the run waits at its start.
         beginning: recording of the same run, shown until it is prepared, or None.
+        at: instant [s] to which the run goes as fast as possible, also if it is paused.
     """
 
     kind = "run"
@@ -58,9 +59,10 @@ class LiveRun:
         tell: Callable[[Any], None],
         paused: bool = False,
         beginning: RecordedBeginning | None = None,
+        at: float = 0.0,
     ) -> None:
         self.trial, self.seed, self.file, self.view = trial, seed, file, view
-        self._tell = tell
+        self._tell, self._at = tell, at
         self.state, self.problems = "preparing", list[str]()
         self.compiling = False
         self.values: dict[str, float | None] = {}
@@ -197,6 +199,8 @@ class LiveRun:
             return
         self.view.show(always=True)
         self._set_state("running")
+        ahead = min(self._at, self.trial.duration) - float(run.simulation.world.times[0])
+        self.loop.hurry(round(ahead / self.trial.step))
 
     def _take_first_step(self, run: SimulationRun) -> None:
         """Compile what a step and its picture need, and go on to where the recording is."""
@@ -241,8 +245,9 @@ class LiveRun:
             self._fail([str(error) if isinstance(error, CrowdbotError | OSError) else repr(error)])
             return False
         self.compiling = False
-        self.view.show(always=self.loop.paused)
-        if self.view.is_status_due() or self.loop.paused:
+        waits = self.loop.paused and not self.loop.hurries
+        self.view.show(always=waits)
+        if self.view.is_status_due() or waits:
             self._measure()
             self._tell(self)
         return True

@@ -107,8 +107,17 @@ class PacedLoop:
     def take_steps(self, count: int) -> None:
         """Pause, and advance a number of steps at once."""
         self.pause()
+        self.hurry(count)
+
+    @property
+    def hurries(self) -> bool:
+        """Whether more steps follow at once, also in a pause."""
+        return self._steps > 0
+
+    def hurry(self, count: int) -> None:
+        """Advance a number of steps at once, and go on as before; a pause ends it."""
         with self._changed:
-            self._steps = count
+            self._steps = max(self._steps, count)
             self._changed.notify_all()
 
     def restart(self) -> None:
@@ -173,10 +182,11 @@ class PacedLoop:
         return not self._closed and not self.ended.is_set() and (not self._paused or self._steps > 0)
 
     def _step(self) -> None:
+        hurries = self.hurries
         self._steps = max(0, self._steps - 1)
         if not self._advance():
             self.ended.set()
-        elif self._speed is not None and not self._paused:
+        elif self._speed is not None and not self._paused and not hurries:
             self._clock.advance()
         else:
             time.sleep(0)

@@ -43,7 +43,7 @@ from crowdbot.world import worlds_of
 
 from .beginning_player import BeginningPlayer
 from .camera_feed import CameraFeed
-from .first_trial import FIRST
+from .first_trial import FIRST, Link, read_link
 from .inspection import inspect_agent, people_rows
 from .live_run import LiveRun
 from .live_values import LIVE_VALUES
@@ -91,15 +91,18 @@ class SimulatorDesk(Desk):
         self._number = 0
         self._source: dict[str, Any] = {}
         self._history: deque[list[Any]] = deque(maxlen=HISTORY)
-        self._greeted = False
+        self._visited = False
         self._branching: threading.Thread | None = None
         self._problem = ""
 
+    def visit(self, address: Mapping[str, str]) -> None:
+        """Open the first trial, or what the address of the first window of the session names."""
+        if not self._visited:
+            self._visited = True
+            threading.Thread(target=self._open_first, args=(address,), name="crowdbot-open", daemon=True).start()
+
     def greet(self) -> dict[str, Any]:
-        """Return what is open; the first window of a session opens the first trial."""
-        if not self._greeted:
-            self._greeted = True
-            threading.Thread(target=self._open_first, name="crowdbot-open", daemon=True).start()
+        """Return what is open."""
         return {
             "status": self._status(), "source": self._source, "layers": sorted(self._layers),
             "cameras": sorted(self._cameras.chosen), "predictor": builtin_name(type(self._predictor), Predictor),
@@ -302,20 +305,25 @@ class SimulatorDesk(Desk):
         if self._branching is not None:
             self._branching.join(WAIT)
 
-    def _open_first(self) -> None:
+    def _open_first(self, address: Mapping[str, str]) -> None:
         try:
+            link = read_link(address)
+            own = bool(self.first and self.first.endswith(".mcap"))
+            if self.first is not None and (link is None or link.name != self.first):  # with --open
+                link = Link(self.first, episode=own, paused=own)
+            link = link or Link(*FIRST)
             if self._player is not None:
                 return
-            if self.first is None:
-                name, values, seed = FIRST
-                trial = self._load(name, values, 1)
-                with self._opening:
-                    if self._player is None:  # a window may have opened another one meanwhile
-                        self._start(trial, name, dict(values), seed, 1, False, shipped_beginning())
-            elif self.first.endswith(".mcap"):
-                self.open_episode(self.first)
-            else:
-                self.open(self.first)
+            if link.episode:
+                self.open_episode(link.name, link.time, link.paused)
+                return
+            values = dict(link.values)
+            trial = self._load(link.name, values, link.variant)
+            seed = trial.seed if link.seed is None else link.seed
+            beginning = shipped_beginning() if (link.name, values, seed) == FIRST else None
+            with self._opening:
+                if self._player is None:  # a window may have opened another one meanwhile
+                    self._start(trial, link.name, values, seed, link.variant, link.paused, beginning, link.time)
         except (CrowdbotError, OSError) as error:
             self._problem = str(error)
             self.session.tell("simulator.status", self._status())
@@ -338,10 +346,11 @@ class SimulatorDesk(Desk):
         variant: int,
         paused: bool,
         beginning: RecordedBeginning | None = None,
+        at: float | None = None,
     ) -> None:
         self._number += 1
         file = self.session.workspace.writable(f".running/{self._number}.mcap")
-        run = LiveRun(trial, int(seed), file, self._view(), self._tell, paused, beginning)
+        run = LiveRun(trial, int(seed), file, self._view(), self._tell, paused, beginning, at or 0.0)
         source = {"kind": "run", "name": name, "settings": values, "variant": variant, "seed": int(seed)}
         self._replace(run, source | {"preview": trial_preview(trial)})
 

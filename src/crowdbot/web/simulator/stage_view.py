@@ -134,7 +134,8 @@ class StageView:
         if self._closed or self._simulation is None:
             return False
         self._offer_images(self._simulation)
-        if not always and (now - self._shown < max(FRAME, self._cost / SHARE) or not self.session.is_ready()):
+        early = now - self._shown < max(FRAME, self._cost / SHARE)
+        if not always and (early or not self.session.is_ready(self.channel)):
             self._owed = True
             return False
         self._shown, self._owed = now, False
