@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import sys
 import types
 import typing
 from collections.abc import Callable, Mapping
@@ -14,7 +15,7 @@ Method = TypeVar("Method", bound=Callable[..., Any])
 WORDS = {
     str: "text",
     int: "a whole number",
-    float: "a number",
+    float: "a finite number",
     bool: "true or false",
     dict: "an object",
     list: "a list",
@@ -24,8 +25,8 @@ WORDS = {
 def command(method: Method) -> Method:
     """Mark a method as a command.
 
-    Its parameters have names and type annotations among text, numbers, bool, list, dict and unions with None; the
-    result is JSON.
+    Its parameters have names and type annotations among text, numbers, bool, list, dict and unions with None; numbers
+    are finite. The result is JSON.
     """
     method.__command__ = True  # type: ignore[attr-defined]
     return method
@@ -85,11 +86,16 @@ def _fits(value: Any, hint: Any) -> bool:
     if isinstance(value, bool):
         return hint is bool
     if hint is float:
-        return isinstance(value, int | float)
-    return isinstance(value, typing.get_origin(hint) or hint)
+        return isinstance(value, int | float) and abs(value) <= sys.float_info.max  # also not for NaN
+    if not isinstance(value, typing.get_origin(hint) or hint):
+        return False
+    parts = typing.get_args(hint) if isinstance(value, list) else ()
+    return all(_fits(one, part) for part in parts for one in value)
 
 
 def _word(hint: Any) -> str:
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
         return " or ".join(_word(one) for one in typing.get_args(hint))
+    if typing.get_origin(hint) is list and Any not in typing.get_args(hint):
+        return f"a list, each {_word(typing.get_args(hint)[0])}"
     return "nothing" if hint is types.NoneType else WORDS.get(typing.get_origin(hint) or hint, "a value")

@@ -130,8 +130,8 @@ class Workspace:
         return path.is_relative_to(self.folder / SESSIONS)
 
     def _resolve(self, name: str) -> Path:
-        if not name or "\0" in name or len(name) > 1000:
-            raise InputError(f"name of a file = {name!r:.60}: expected 1 to 1000 characters")
+        if not name or "\0" in name or len(name) > 1000 or name.encode(errors="ignore").decode() != name:
+            raise InputError(f"name of a file = {name!r:.60}: expected 1 to 1000 characters of Unicode")
         return (self.folder / name).resolve()
 
 
