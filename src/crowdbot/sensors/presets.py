@@ -74,27 +74,43 @@ LASERS = "Aldebaran, Pepper technical overview 2.0, lasers (doc.aldebaran.com/2-
 SONARS = "Aldebaran, Pepper technical overview 2.0, sonars (doc.aldebaran.com/2-0)"
 CROWDBOT = "CrowdBot simulator, Pepper model (github.com/FabienGrzeskowiakInria/CrowdBot_robots)"
 
+_UTM_30LX: dict[str, Any] = {
+    "rays": 1081,
+    "field_of_view": math.radians(270.0),
+    "range_min": 0.1,
+    "range_max": 30.0,
+    "resolution": 0.001,
+    "rate": 40.0,
+}
+_UTM_30LX_SOURCES = {
+    "rays": f"{SCIP}, table 2 (steps 0 to 1080)",
+    "field_of_view": f"{UTM_SHEET} (270 deg, 0.25 deg)",
+    "range_min": UTM_SHEET,
+    "range_max": UTM_SHEET,
+    "resolution": f"{SCIP} (distances in whole millimetres)",
+    "rate": f"{UTM_SHEET} (25 ms a scan)",
+    "noise": f"{UTM_SHEET} (sd under 10 mm up to 10 m, under 30 mm beyond); 10 mm taken for all",
+}
+_TIM571: dict[str, Any] = {
+    "rays": 811,
+    "field_of_view": math.radians(270.0),
+    "range_min": 0.05,
+    "range_max": 25.0,
+    "resolution": 0.001,
+    "rate": 15.0,
+}
+_TIM571_SOURCES = {
+    "rays": f"{TIM_DRIVER} (0.33 deg: 811 in 270 deg)",
+    "field_of_view": f"{TIM_INFO} (-45 to +225 deg)",
+    "range_min": ASSUMED + "0.05 m",
+    "range_max": TIM_DRIVER,
+    "resolution": ASSUMED + "whole millimetres",
+    "rate": TIM_DRIVER,
+    "noise": f"{TIM_SHEET} (statistical error 20 mm; a systematic one of up to 60 mm is left out)",
+}
+
 _PRESETS = {
-    "hokuyo-utm-30lx": _made(
-        Lidar2D(
-            rays=1081,
-            field_of_view=math.radians(270.0),
-            range_min=0.1,
-            range_max=30.0,
-            resolution=0.001,
-            rate=40.0,
-        ),
-        {
-            "rays": f"{SCIP}, table 2 (steps 0 to 1080)",
-            "field_of_view": f"{UTM_SHEET} (270 deg, 0.25 deg)",
-            "range_min": UTM_SHEET,
-            "range_max": UTM_SHEET,
-            "resolution": f"{SCIP} (distances in whole millimetres)",
-            "rate": f"{UTM_SHEET} (25 ms a scan)",
-            "noise": f"{UTM_SHEET} (sd under 10 mm up to 10 m, under 30 mm beyond); 10 mm taken for all",
-        },
-        noise=0.01,
-    ),
+    "hokuyo-utm-30lx": _made(Lidar2D(**_UTM_30LX), _UTM_30LX_SOURCES, noise=0.01),
     "hokuyo-urg-04lx": _made(
         Lidar2D(
             rays=682,
@@ -115,47 +131,11 @@ _PRESETS = {
         },
         noise=0.01,
     ),
-    "sick-tim571": _made(
-        Lidar2D(
-            rays=811,
-            field_of_view=math.radians(270.0),
-            range_min=0.05,
-            range_max=25.0,
-            resolution=0.001,
-            rate=15.0,
-        ),
-        {
-            "rays": f"{TIM_DRIVER} (0.33 deg: 811 in 270 deg)",
-            "field_of_view": "SICK, TiM55x/56x/57x technical information 8015883 (-45 to +225 deg)",
-            "range_min": ASSUMED + "0.05 m",
-            "range_max": TIM_DRIVER,
-            "resolution": ASSUMED + "whole millimetres",
-            "rate": TIM_DRIVER,
-            "noise": f"{TIM_SHEET} (statistical error 20 mm; a systematic one of up to 60 mm is left out)",
-        },
-        noise=0.02,
-    ),
+    "sick-tim571": _made(Lidar2D(**_TIM571), _TIM571_SOURCES, noise=0.02),
     "sick-tim571-pulsed": _made(
-        PulsedLidar2D(
-            rays=811,
-            field_of_view=math.radians(270.0),
-            range_min=0.05,
-            range_max=25.0,
-            resolution=0.001,
-            rate=15.0,
-            scan_time=0.05,
-            beam_width=0.0144,
-            pulse_length=0.75,
-            range_10=8.0,
-        ),
-        {
-            "rays": f"{TIM_DRIVER} (0.33 deg: 811 in 270 deg)",
-            "field_of_view": f"{TIM_INFO} (-45 to +225 deg)",
-            "range_min": ASSUMED + "0.05 m",
-            "range_max": TIM_DRIVER,
-            "resolution": ASSUMED + "whole millimetres",
-            "rate": TIM_DRIVER,
-            "noise": f"{TIM_SHEET} (statistical error 20 mm; a systematic one of up to 60 mm is left out)",
+        PulsedLidar2D(**_TIM571, scan_time=0.05, beam_width=0.0144, pulse_length=0.75, range_10=8.0),
+        _TIM571_SOURCES
+        | {
             "scan_time": f"{TIM_INFO}, measured value output (15 turns a second, 270 of 360 deg in 50 ms)",
             "beam_width": f"{TIM8_SHEET}: 8.6 mrad and 5.8 mrad of overlapping pulses",
             "pulse_length": f"{TIM_SHEET}: pulses of at most 5 ns, half of 1.5 m",
@@ -164,25 +144,8 @@ _PRESETS = {
         noise=0.02,
     ),
     "hokuyo-utm-30lx-pulsed": _made(
-        PulsedLidar2D(
-            rays=1081,
-            field_of_view=math.radians(270.0),
-            range_min=0.1,
-            range_max=30.0,
-            resolution=0.001,
-            rate=40.0,
-            scan_time=0.01875,
-        ),
-        {
-            "rays": f"{SCIP}, table 2 (steps 0 to 1080)",
-            "field_of_view": f"{UTM_SHEET} (270 deg, 0.25 deg)",
-            "range_min": UTM_SHEET,
-            "range_max": UTM_SHEET,
-            "resolution": f"{SCIP} (distances in whole millimetres)",
-            "rate": f"{UTM_SHEET} (25 ms a scan)",
-            "noise": f"{UTM_SHEET} (sd under 10 mm up to 10 m, under 30 mm beyond); 10 mm taken for all",
-            "scan_time": f"{UTM_SHEET}: 270 of the 360 deg of 25 ms",
-        },
+        PulsedLidar2D(**_UTM_30LX, scan_time=0.01875),
+        _UTM_30LX_SOURCES | {"scan_time": f"{UTM_SHEET}: 270 of the 360 deg of 25 ms"},
         noise=0.01,
     ),
     "rplidar-a2": _made(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, storable
+from crowdbot.core import InputError, check_number, storable
 from crowdbot.typing import Floats, Ints
 
 from .beams import Beams, cone_directions, sort_beams
@@ -39,30 +40,37 @@ class RangeReading(Reading):
     direction: Floats
 
 
-def nearest(
-    sensor: Ranging,
-    scene: Scene,
-    pose: Pose | SpatialPose,
-    fan: tuple[Beams, Floats, Floats],
-    rng: Randomness | None,
-) -> RangeReading:
-    """Return the smallest distance of a bundle of beams: sorted beams, directions ``[R, 3]`` and lengths ``[R]``
-    [m].
-    """
-    bundle, directions, length = fan
-    hits = cast_rays(scene, spatial_pose(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
-    back = (hits.distance <= length) & (hits.cos_incidence >= sensor.min_cos_incidence)
-    best = np.argmin(np.where(back, hits.distance, np.inf), axis=1)
-    rows = np.arange(len(best))
-    distance = np.where(back, hits.distance, np.inf)[rows, best][:, None]
-    hit, part = hits.hit[rows, best][:, None], hits.part[rows, best][:, None]
-    ranges = apply_limits(sensor, distance, np.ones_like(distance), hit, part, rng)[:, 0]
-    direction = np.where(hit != NOTHING, directions[best], np.nan)
-    return RangeReading(scene.time, pose, ranges, hit[:, 0], part[:, 0], direction)
+@dataclass(frozen=True)
+class RangeFinder(Ranging):
+    """Measures the smallest distance of a bundle of beams around the x axis of its pose."""
+
+    spatial: ClassVar[bool] = True
+
+    @abstractmethod
+    def bundle(self) -> tuple[Beams, Floats, Floats]:
+        """Return the sorted beams, their directions ``[R, 3]`` in the sensor frame and their lengths ``[R]`` [m]."""
+
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
+        """Return the smallest distance in the zone.
+
+        Raises:
+            InputError: the pose does not fit the scene, or noise lacks a generator.
+        """
+        self.check(view)
+        scene, (beams, directions, length) = view.scene, self.bundle()
+        hits = cast_rays(scene, spatial_pose(view.pose), beams, float(length.max()), skins=self.skins, normals=False)
+        back = (hits.distance <= length) & (hits.cos_incidence >= self.min_cos_incidence)
+        best = np.argmin(np.where(back, hits.distance, np.inf), axis=1)
+        rows = np.arange(len(best))
+        distance = np.where(back, hits.distance, np.inf)[rows, best][:, None]
+        hit, part = hits.hit[rows, best][:, None], hits.part[rows, best][:, None]
+        ranges = apply_limits(self, distance, np.ones_like(distance), hit, part, rng)[:, 0]
+        direction = np.where(hit != NOTHING, directions[best], np.nan)
+        return RangeReading(scene.time, view.pose, ranges, hit[:, 0], part[:, 0], direction), None
 
 
 @dataclass(frozen=True)
-class Infrared(Ranging):
+class Infrared(RangeFinder):
     """An infrared range finder: the smallest distance in a cone around the x axis of its pose.
 
     The cone is sampled by fixed beams, spread evenly over its solid angle. The first beam is the axis.
@@ -84,7 +92,6 @@ class Infrared(Ranging):
     [0.7]
     """
 
-    spatial: ClassVar[bool] = True
     dispersion: float = math.radians(0.5)
     rays: int = 100
     range_min: float = 0.05
@@ -100,21 +107,13 @@ class Infrared(Ranging):
             raise InputError(f"Infrared: dispersion = {self.dispersion} rad must be above 0 and at most pi / 2")
         self.check_ranges()
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
-        """Return the smallest distance in the zone.
-
-        Raises:
-            InputError: the pose does not fit the scene, or noise lacks a generator.
-        """
-        self.check(view)
-        scene, pose = view.scene, view.pose
-        bundle, directions = _narrow_cone(self.dispersion, self.rays)
-        length = np.full(self.rays, self.range_max)
-        return nearest(self, scene, pose, (bundle, directions, length), rng), None
+    def bundle(self) -> tuple[Beams, Floats, Floats]:
+        """Return the beams of the cone, all of the largest range."""
+        return (*_cone(self.dispersion, self.rays), np.full(self.rays, self.range_max))
 
 
 @functools.lru_cache(maxsize=64)
-def _narrow_cone(half_angle: float, rays: int) -> tuple[Beams, Floats]:
+def _cone(half_angle: float, rays: int) -> tuple[Beams, Floats]:
     directions = cone_directions(half_angle, rays)
     return sort_beams(directions), directions
 
@@ -140,7 +139,7 @@ def teardrop(angle: Floats, radius: float, length: float) -> Floats:
 
 
 @dataclass(frozen=True)
-class Ultrasound(Ranging):
+class Ultrasound(RangeFinder):
     """An ultrasonic range finder: the smallest distance in a :func:`teardrop` around the x axis of its pose.
 
     Fields:
@@ -160,7 +159,6 @@ class Ultrasound(Ranging):
     [1.7]
     """
 
-    spatial: ClassVar[bool] = True
     radius: float = 0.5
     rays: int = 400
     range_min: float = 0.15
@@ -180,20 +178,14 @@ class Ultrasound(Ranging):
         """Largest angle between the axis and a direction inside the zone [rad]."""
         return math.atan(0.5 * SLIM * self.radius / self.range_max)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
-        """Return the smallest distance in the zone.
-
-        Raises:
-            InputError: the pose does not fit the scene, or noise lacks a generator.
-        """
-        self.check(view)
-        scene, pose = view.scene, view.pose
-        return nearest(self, scene, pose, _teardrop(self.radius, self.range_max, self.rays), rng), None
+    def bundle(self) -> tuple[Beams, Floats, Floats]:
+        """Return the beams of the zone, each up to its surface."""
+        return _teardrop(self.radius, self.range_max, self.rays)
 
 
 @functools.lru_cache(maxsize=64)
 def _teardrop(radius: float, length: float, rays: int) -> tuple[Beams, Floats, Floats]:
     half = math.atan(0.5 * SLIM * radius / length)
-    directions = cone_directions(half, rays)
+    beams, directions = _cone(half, rays)
     angle = np.arctan2(np.hypot(directions[:, 1], directions[:, 2]), directions[:, 0])
-    return sort_beams(directions), directions, teardrop(np.minimum(angle, half), radius, length)
+    return beams, directions, teardrop(np.minimum(angle, half), radius, length)
