@@ -120,12 +120,13 @@ def test_wrong_words_are_said_in_a_sentence(capsys, tmp_path, monkeypatch, words
 def test_check_reads_experiments_and_trials(capsys, tmp_path):
     file = tmp_path / "experiment.xml"
     file.write_text(
-        '<experiment name="e" sed="1">\n<block name="b"><trial name="t" source="frontl"/></block></experiment>'
+        '<experiment name="e" sed="1">\n<block name="b" ordr="fixed"><trial name="t" source="frontal"/></block>'
+        "</experiment>"
     )
     assert main(["check", str(file), "robot-speed", "frontal"]) == 2
     lines = capsys.readouterr().out.splitlines()
     assert "experiment.xml:1: <experiment> has no attribute 'sed', did you mean 'seed'" in lines[0]
-    assert "experiment.xml:2: <trial> source='frontl': there is no trial 'frontl', did you mean 'frontal'" in lines[1]
+    assert "experiment.xml:2: <block> has no attribute 'ordr', did you mean 'order'" in lines[1]
     robot = "  robot 'robot' is a disc: differential-drive, at most 1 m/s, radius 0.3 m, sensors scan (lidar2d)"
     assert lines[2:] == ["experiment.xml: 2 errors", "robot-speed: OK", "frontal: OK", robot]
 

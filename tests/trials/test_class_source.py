@@ -149,3 +149,35 @@ def test_a_noise_of_zero_width_is_checked_and_run_alike(tmp_path: Path, noise: s
     trial = written(tmp_path, changed('noise="gaussian(0.01)"', f'noise="{noise}"'))
     assert main(["check", str(trial)]) == 0
     assert main(["run", str(trial)]) in (0, 1)
+
+
+@pytest.mark.parametrize("part", ["navigator", "crowd"])
+def test_a_default_that_only_running_code_knows_does_not_stop_a_check(tmp_path: Path, part: str) -> None:
+    """A sweep reads the trial once more from its elements."""
+    (tmp_path / "shy.py").write_text("import os\n" + SHY.replace("float = 1.0", "float = os.getpid() / 1e6"))
+    model = "import os\nfrom dataclasses import dataclass\nfrom crowdbot.models import ORCA\n"
+    (tmp_path / "mine.py").write_text(
+        f"{model}@dataclass(frozen=True)\nclass Mine(ORCA):\n    wish: float = os.nice(0)\n"
+    )
+    old, new = (
+        ('type="straight"', 'type="shy.py:Shy"') if part == "navigator" else ('type="orca"', 'type="mine.py:Mine"')
+    )
+    text = changed(old, new).replace("<stage", '<sweep path="duration" values="3 4"/><stage', 1)
+    trial = written(tmp_path, text)
+    with without_running_code():
+        assert load_trial(trial, duration=2).duration == 2.0
+    assert main(["check", str(trial)]) == 0
+
+
+def test_an_unreadable_default_is_no_problem_of_a_person(tmp_path: Path) -> None:
+    model = "import os\nfrom dataclasses import dataclass\nfrom crowdbot.models import ORCA\n"
+    (tmp_path / "mine.py").write_text(
+        f"{model}@dataclass(frozen=True)\nclass Mine(ORCA):\n    wish: float = os.nice(0)\n"
+    )
+    agent = '<agent x="1" y="0.5"><parameter name="wish" value="3"/></agent><robot'
+    trial = written(tmp_path, changed('type="orca"', 'type="mine.py:Mine"').replace("<robot", agent, 1))
+    with without_running_code():
+        assert load_trial(trial).agents[0].parameters[0].value == 3.0
+    trial.write_text(trial.read_text().replace('name="wish" value="3"', 'name="wish"'))
+    with without_running_code(), pytest.raises(TrialError, match="needs the attribute 'value'"):
+        load_trial(trial)

@@ -120,7 +120,6 @@ def test_any_flow_survives_the_way_through_xml(trial: Trial) -> None:
 
 
 MISTAKES = {
-    "radius of ways": ('radius="0.25"', 'radius="0"', r':7: <routing> radius="0" must be above 0 m and at most 10 m$'),
     "unreachable": (
         '"nearest"/>',
         '"neerest"/>',
@@ -130,11 +129,6 @@ MISTAKES = {
         'radius="0.25" un',
         'radius="6" un',
         r":7: <routing> is impossible on this stage: no space between",
-    ),
-    "unknown attribute of routing": (
-        'radius="0.25"',
-        'raduis="0.25"',
-        r":7: <routing> has no attribute 'raduis', did you",
     ),
     "name of a crowd taken": (
         '"hurried" type',
@@ -146,16 +140,7 @@ MISTAKES = {
         "type",
         r":9: <crowd> needs the attribute 'name': each of several crowds",
     ),
-    "unknown model": (
-        '"social-force"',
-        '"social-farce"',
-        r":9: <crowd> unknown crowd model 'social-farce', did you mean",
-    ),
-    "name of a crowd": ('"calm" type', '"c c" type', r':8: <crowd> name="c c" must match'),
     "variant": ('"force"', '"forse"', r':10: <contact> variant="forse" must be position or force, did you mean'),
-    "stiffness": ('"50"', '"-50"', r':10: <contact> stiffness="-50" must be above 0 1/s2'),
-    "iterations": ('iterations="4"', 'iterations="0"', r':10: <contact> iterations="0" must be at least 1'),
-    "limit": ('max-speed="2.5"', 'max-speed="nan"', r':11: <limits> max-speed="nan" is not finite'),
     "limit that is none": ('max-speed="2.5"', 'max-speed="none"', r':11: <limits> max-speed="none" is not a number'),
     "twice": ("<limits ", "<contact/><limits ", r":11: <contact> occurs in <trial> twice; one is allowed"),
     "substeps": ('substeps="2"', 'substeps="0"', r':2: <trial> substeps="0" must be at least 1'),
@@ -180,12 +165,6 @@ MISTAKES = {
         "<directoin ",
         r":15: <directoin> is not an element of <journey>, did you mean 'direction'",
     ),
-    "stop with a mistake": (
-        'heading="0.3"',
-        'heading="9"',
-        r':15: <direction> heading="9" must be at most 6.28319 rad',
-    ),
-    "aim": ('aim="random"', 'aim="randon"', r':13: <zone> aim="randon" must be nearest or random, did you mean'),
     "zone without area": ("-0.5,-1 0.5,-1 0.5,1 -0.5,1", "0,0 1,1 2,2", r":13: <zone> points is not a simple polygon"),
     "tiny zone": (
         "-0.5,-1 0.5,-1 0.5,1 -0.5,1",
@@ -197,7 +176,6 @@ MISTAKES = {
         "7,0 9,0 9,1",
         r":13: <zone> zone reaches outside the walkable area",
     ),
-    "point outside": ('x="4" y="-2"', 'x="44" y="-2"', r":14: <point> at 44,-2 lies outside the walkable area"),
     "endless stop": (
         '<point x="4"',
         '<direction heading="1"/><point x="4"',
@@ -208,17 +186,6 @@ MISTAKES = {
         '"through" then',
         r":17: <journey> name 'through' is already used by another journey",
     ),
-    "unknown journey": (
-        'journey="through" rate',
-        'journey="trough" rate',
-        r":22: <source> journey=\"trough\" is not the name of a journey, did you mean 'through'\?; there are thr",
-    ),
-    "unknown crowd": (
-        'crowd="hurried"/>\n  <spawner',
-        'crowd="hury"/>\n  <spawner',
-        r'crowd="hury" is not the name of a crowd',
-    ),
-    "no goal": ('journey="through" rate', "rate", r':22: <source> needs a goal zone or a journey: goal="x,y'),
     "two goals": (
         'goal="-5',
         'journey="in" goal="-5',
@@ -231,13 +198,6 @@ MISTAKES = {
     ),
     "rate": ('rate="0.9"', 'rate="0"', r':22: <source> rate="0" must be above 0 1/s'),
     "timing": ('"regular"', '"regulr"', r':23: <source> timing="regulr" must be poisson or regular, did you mean'),
-    "end before begin": ('begin="2"', 'begin="20"', r":23: <source> begin 20 s must be before end 15 s"),
-    "max-count": ('max-count="90"', 'max-count="-1"', r':22: <source> max-count="-1" must be at least 0'),
-    "radius of a body": (
-        'radius="0.2"',
-        'radius="uniform(0, 1)"',
-        r"must be above 0 m and at most 5 m, and it ranges from 0 to 1",
-    ),
     "crowd of people": (
         'max-count="90"',
         'begin="1" speed="1" radius="2" max-count="9" arrival="leave"',
@@ -254,7 +214,6 @@ MISTAKES = {
         'zone="6,1 7,1 7,2 6,2"',
         r":21: <spawner> zone overlaps exit 'east'",
     ),
-    "exit outside": ("6.5,-4 8,-4 8,4 6.5,4", "16,-4 18,-4 18,4", r":25: <exit> zone lies outside the walkable area"),
     "too many come": (
         'rate="0.9" max-count="90"',
         'rate="9999"',
@@ -275,14 +234,7 @@ def test_a_mistake_is_named_with_its_line(mistake: str) -> None:
     with pytest.raises(TrialError) as found:
         parse_trial(FLOW.replace(old, new, 1), place="t.xml")
     assert re.search(sentence, str(found.value)), str(found.value)
-    assert len(found.value.problems) == 1 or mistake in ("unknown stop", "unknown attribute of routing")
-
-
-def test_a_journey_that_could_not_be_read_is_not_missed_by_those_who_name_it() -> None:
-    text = FLOW.replace('y="-2" tolerance="0.5"', 'y="-2" tolerance="-1"').replace("social-force", "social-farce")
-    with pytest.raises(TrialError) as found:
-        parse_trial(text)
-    assert [problem.split(":")[1] for problem in found.value.problems] == ["9", "14"]
+    assert len(found.value.problems) == 1
 
 
 def blocked(*walls: str) -> str:

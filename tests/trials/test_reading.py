@@ -149,95 +149,23 @@ def test_any_trial_survives_the_way_through_xml(trial: Trial) -> None:
 
 
 MISTAKES = {
-    "unknown element": (
-        "<crowd ",
-        '<spawnner count="0" zone="0,0 1,0 1,1" goal="0,0 1,0 1,1"/><crowd ',
-        r":7: <spawnner> is not an element of <trial>, did you mean 'spawner'\?; it takes <stage>, <routing>, <crowd>",
-    ),
-    "unknown attribute": (
-        'count="2"',
-        'cuont="2"',
-        r":8: <spawner> has no attribute 'cuont', did you mean 'count'\?; it takes name, count, zone",
-    ),
-    "misspelt attribute of a model": (
-        'time-horizon="2"',
-        'time-horizn="2"',
-        r":7: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'\?",
-    ),
     "misspelt attribute of a sensor": (
         'rays="90"',
         'rais="90"',
         r":14: <sensor> has no attribute 'rais', did you mean 'rays'\?; it takes .*heading",
-    ),
-    "negative radius": (
-        'radius="0.25"',
-        'radius="-0.25"',
-        r':9: <spawner> radius="-0.25" must be above 0 m and at most 5 m$',
-    ),
-    "negative radius of a robot": (
-        'radius="0.3"',
-        'radius="-1"',
-        r':10: <robot> radius="-1" must be at least 0.001 m and at most 10 m$',
     ),
     "radius that can be negative": (
         'radius="0.25"',
         'radius="normal(0.2, 0.1)"',
         r"must be above 0 m and at most 5 m, and it ranges from -0.1 to 0.5",
     ),
-    "nan": ('duration="4"', 'duration="nan"', r':2: <trial> duration="nan" is not finite'),
-    "infinite": ('x="-2"', 'x="1e999"', r':10: <robot> x="1e999" is not finite'),
     "nan point": ("-5,-2 -3,-2", "nan,-2 -3,-2", r":8: <spawner> zone=.* has the point 'nan,-2', which is not finite"),
-    "no number": ('step="0.05"', 'step="fast"', r':2: <trial> step="fast" is not a number'),
-    "no whole number": ('count="2"', 'count="2.5"', r':8: <spawner> count="2.5" must be a whole number'),
-    "negative count": ('count="2"', 'count="-2"', r':8: <spawner> count="-2" must be at least 0'),
-    "no distribution": (
-        'speed="uniform(1, 1.4)"',
-        'speed="unifrom(1, 1.4)"',
-        r":9: <spawner> speed=.* 'unifrom' is not a distribution, did you mean 'uniform'\?",
-    ),
-    "too few numbers": ("uniform(1, 1.4)", "uniform(1)", r"uniform takes 2 numbers, not 1"),
-    "no truth": ('collision="false"', 'collision="no"', r':16: <end> collision="no" must be true or false'),
     "wrong choice": (
         'name="west"',
         'name="west" arrival="leaves"',
         r'arrival="leaves" must be leave or stay, did you mean .leave.\?',
     ),
-    "missing attribute": (' name="small"', "", r":2: <trial> needs the attribute 'name': name of the trial"),
-    "missing element": (
-        '<navigator type="straight"/>',
-        "",
-        r":10: <robot> needs the element <navigator>: navigator",
-    ),
-    "missing type": ('type="orca" ', "", r":7: <crowd> needs the attribute 'type': .*orca.* or an address"),
-    "unknown type": (
-        '"straight"',
-        '"straigth"',
-        r":13: <navigator> unknown navigator 'straigth', did you mean 'straight'",
-    ),
-    "element twice": ("<end ", "<stage/><end ", r":16: <stage> occurs in <trial> twice; one is allowed"),
-    "stray text": ("<end ", "hello<end ", r":2: <trial> contains the text 'hello'; values are written as attributes"),
-    "value of a model": (
-        'time-horizon="2"',
-        'time-horizon="-2"',
-        r":7: <crowd> .*-2.* must be at least 0.001 s and at most 1e\+09 s",
-    ),
-    "value of a drive": (
-        'max-speed="1"',
-        'max-speed="0"',
-        r":12: <drive> .*max_speed = 0.0 m/s must be finite and above 0 m/s, without an upper limit",
-    ),
     "noise": ("gaussian(0.01)", "gausian(0.01)", r":14: <sensor> .*unknown noise 'gausian'.*did you mean 'gaussian'"),
-    "period": (
-        "<end ",
-        '<recording period="0.02"/><end ',
-        r"<recording> recording period 0.02 s is shorter than the time step of 0.05 s; take at least 0.05 s",
-    ),
-    "sensor rate": (
-        'rays="90"',
-        'rate="40"',
-        r":14: <sensor> rate 40 Hz: 0.025 s is shorter than the time step of 0.05 s; take at least 0.05 s, or a",
-    ),
-    "control period": ('x="-2"', 'x="-2" control-period="0.03"', r":10: <robot> control-period 0.03 s is shorter"),
     "zone in an obstacle": (
         "-5,-2 -3,-2 -3,1 -5,1",
         "0.2,1.7 0.8,1.7 0.8,2.3",
@@ -248,37 +176,11 @@ MISTAKES = {
         "-5,2.85 5,2.85 5,2.95 -5,2.95",
         r":8: <spawner> spawn zone of 1.00 m2 leaves no room for a single body beside walls",
     ),
-    "goal in an obstacle": (
-        "4,-2 5,-2 5,1 4,1",
-        "0.2,1.7 0.8,1.7 0.8,2.3",
-        r":8: <spawner> goal zone lies inside obstacle 1 of the stage",
-    ),
-    "zone outside": (
-        "-5,-2 -3,-2 -3,1 -5,1",
-        "-9,-2 -3,-2 -3,1 -9,1",
-        r":8: <spawner> spawn zone reaches outside the walkable area",
-    ),
-    "crooked zone": (
-        "-5,-2 -3,-2 -3,1 -5,1",
-        "-5,-2 -3,1 -3,-2 -5,1",
-        r":8: <spawner> zone is not a simple polygon: self-intersection.*list its corners in order",
-    ),
-    "too many people": (
-        'count="2"',
-        'count="90"',
-        r":8: <spawner> only \d\d of 90 people fit into the spawn zone of 6.00 m2",
-    ),
-    "robot in an obstacle": (
-        'x="-2" y="-2.4"',
-        'x="0.5" y="2"',
-        r":10: <robot> starts at 0.5,2 inside obstacle 1 of the stage",
-    ),
     "robot near a wall": (
         'y="-2.4" radius',
         'y="-2.8" radius',
         r":10: <robot> starts 0.20 m from a wall",
     ),
-    "robot outside": ('x="-2" y', 'x="-22" y', r":10: <robot> starts at -22,-2.4 outside the walkable area"),
     "goal out of reach": ('<goal x="3" y="-2.4"', '<goal x="30" y="0"', r":10: <robot> has its goal at 30,0 outside"),
     "name of a robot": ('robot name="robot"', 'robot name="my robot"', r':10: <robot> name="my robot" must match'),
     "holonomic": (
@@ -309,9 +211,7 @@ def test_all_mistakes_are_said_at_once_in_the_order_of_the_lines() -> None:
     for old, new in (
         ('duration="4"', 'duration="-4"'),
         ('type="orca"', 'type="orka"'),
-        ('count="2" zone="-5', 'count="500" zone="-5'),
         ('radius="0.25"', 'radius="-0.25"'),
-        ('x="-2" y="-2.4"', 'x="0.5" y="2"'),
         ('rays="90"', 'rais="90" rate="7x"'),
         ("<end ", "<finish/><end "),
     ):
@@ -321,15 +221,14 @@ def test_all_mistakes_are_said_at_once_in_the_order_of_the_lines() -> None:
         parse_trial(text, place="t.xml")
     lines = [int(re.match(r"t\.xml:(\d+): ", problem)[1]) for problem in found.value.problems]  # type: ignore[index]
     assert lines == sorted(lines)
-    assert {2, 7, 8, 9, 14, 16} <= set(lines)
-    assert lines.count(14) == 2, found.value.problems
+    assert lines == [2, 7, 9, 14, 14, 16], found.value.problems
 
 
 HIDDEN = """<trial name="bad">
   <stage area="no.wkt" map="no.yaml" wall-height="-1"/>
-  <crowd type="orca" time-horizon="-1" max-neighbors="-3" nosuch="1"/>
-  <agent x="1" y="1" body="womn man" activity="fone tlk" speed="-1"/>
-  <spawner count="-1" zone="0,0 1,0 1,1" goal="0,0 1,0 1,1" body="womn"/>
+  <crowd type="orca" time-horizon="-1" nosuch="1"/>
+  <agent x="1" y="1" body="womn man" speed="-1"/>
+  <spawner count="-1" zone="0,0 1,0 1,1" goal="0,0 1,0 1,1"/>
   <recorded data="none.txt" mode="reactiv"/>
   <robot type="peper" x="2" y="2" radius="-1">
     <goal x="3" y="2"/>
@@ -339,52 +238,32 @@ HIDDEN = """<trial name="bad">
 """
 
 
-def test_no_mistake_hides_another_in_its_element(tmp_path: Path) -> None:
+def test_no_wrong_value_hides_another_in_its_element(tmp_path: Path) -> None:
     with pytest.raises(TrialError) as found:
         parse_trial(HIDDEN, place="t.xml", folder=tmp_path)
     said = str(found.value)
     for line, part in (
         (1, "needs the attribute 'duration'"),
         (2, 'wall-height="-1" must be at least 0.001 m and at most 100 m'),
-        (2, 'area="no.wkt" there is no file'),
-        (2, 'map="no.yaml" there is no file'),
         (3, "no attribute 'nosuch'"),
         (3, "time_horizon = -1.0"),
-        (3, "max_neighbors = -3.0"),
         (4, 'speed="-1" must be'),
-        (4, "has 'womn', did you mean 'woman'?"),
-        (4, "has 'fone', did you mean 'phone'?"),
-        (4, "has 'tlk', did you mean 'talk'?"),
         (5, 'count="-1" must be at least 0'),
-        (5, "has 'womn'"),
         (6, "did you mean 'reactive'?"),
-        (6, 'data="none.txt" there is no file'),
         (7, 'radius="-1"'),
-        (7, "type=\"peper\" is not a robot, did you mean 'pepper'?"),
         (7, "needs the element <navigator>"),
-        (9, "rays = -4"),
-        (9, "range_max = -1.0"),
         (9, "rate: 'x' is not a number"),
     ):
         assert re.search(rf"^t\.xml:{line}: <\w+> .*{re.escape(part)}", said, re.MULTILINE), (line, part, said)
-    assert len(found.value.problems) == 21, said
-
-
-def test_limits_of_both_sides_are_told() -> None:
-    for old, new, sentence in (
-        ('step="0.05"', 'step="3"', 'step="3" must be at most 1 s and at least 0.001 s'),
-        ('step="0.05"', 'step="0"', 'step="0" must be at least 0.001 s and at most 1 s'),
-        ('duration="4"', 'duration="1e7"', 'duration="1e7" must be at most 86400 s and above 0 s'),
-    ):
-        with pytest.raises(TrialError, match=sentence):
-            parse_trial(changed(old, new))
+    assert len(found.value.problems) == 10, said
 
 
 def test_two_robots_must_not_overlap_nor_share_a_name() -> None:
     text = GOOD.replace("<end ", GOOD[GOOD.index("<robot") : GOOD.index("<end")] + "<end ")
-    with pytest.raises(TrialError, match=r"starts 0.00 m from robot 'robot'") as found:
+    with pytest.raises(TrialError, match="name 'robot' is already used by another robot"):
         parse_trial(text)
-    assert any("name 'robot' is already used by another robot" in problem for problem in found.value.problems)
+    with pytest.raises(TrialError, match=r"starts 0.00 m from robot 'other'"):
+        parse_trial(text.replace('robot name="robot"', 'robot name="other"', 1))
 
 
 def test_a_trial_made_in_python_is_checked_too() -> None:

@@ -7,10 +7,9 @@ import importlib.resources
 import pytest
 from hypothesis import given, settings
 from lxml import etree
-from test_reading import MISTAKES, trials
+from test_reading import trials
 
-from crowdbot.core import TrialError
-from crowdbot.trials import Trial, builtin_trials, expand_spawners, load_trial, parse_trial, schema, trial_xml
+from crowdbot.trials import Trial, builtin_trials, expand_spawners, load_trial, schema, trial_xml
 from trial_schema import SCHEMA, valid
 from trial_texts import FLOW, GOOD
 
@@ -74,21 +73,6 @@ WORSE = [
 @pytest.mark.parametrize(("old", "new"), WORSE)
 def test_what_is_wrong_is_not_valid(old: str, new: str) -> None:
     assert not valid(ALL.replace(old, new, 1))
-
-
-def test_what_is_not_valid_is_not_read() -> None:
-    """The schema may let through what only the reader can judge, never the reverse."""
-    refused = 0
-    for old, new, _ in MISTAKES.values():
-        try:
-            good = valid(GOOD.replace(old, new, 1))
-        except etree.XMLSyntaxError:
-            continue
-        if not good:
-            refused += 1
-            with pytest.raises(TrialError):
-                parse_trial(GOOD.replace(old, new, 1))
-    assert refused >= 5
 
 
 def test_every_element_and_attribute_has_words_for_people() -> None:

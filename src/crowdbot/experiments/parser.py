@@ -6,7 +6,7 @@ import contextlib
 import dataclasses
 import importlib.resources
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 from xml.parsers import expat
@@ -17,14 +17,10 @@ from crowdbot.trials import (
     XmlReader,
     builtin_trials,
     element_from,
-    has_kind,
-    kind_of,
     load_trial,
     parse_trial,
     parse_trial_xml,
     read_trial_bytes,
-    readable,
-    skip_unreadable,
 )
 
 from .experiment import Block, Experiment, Screen, TrialEntry
@@ -88,11 +84,12 @@ def parse_experiment(
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, expected <{ROOT}>")
     result = XmlReader(place, folder or Path.cwd(), trust).read(Experiment, root)
-    for thing, sentence in problems_of(result.elements, folder, trust) if whole else []:
+    result.raise_problems()
+    experiment: Experiment = result.value
+    for thing, sentence in problems_of(experiment, folder, trust) if whole else []:
         result.report(thing, sentence)
     result.raise_problems()
-    assert isinstance(result.value, Experiment)
-    return dataclasses.replace(result.value, folder=folder)
+    return dataclasses.replace(experiment, folder=folder)
 
 
 def experiment_xml(experiment: Experiment) -> str:
@@ -110,7 +107,7 @@ def check_experiment(experiment: Experiment, *, trust: bool = False) -> None:
     Raises:
         TrialError: the experiment has errors; the exception lists all of them.
     """
-    found = problems_of(everything(experiment), experiment.folder, trust)
+    found = problems_of(experiment, experiment.folder, trust)
     if sentences := [f"experiment {experiment.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]:
         raise TrialError(*sentences)
 
@@ -129,33 +126,31 @@ def everything(experiment: Experiment) -> list[Any]:
     return [*questions, *screens, *trials, *experiment.blocks, experiment]
 
 
-def problems_of(things: Iterable[Any], folder: Path | None, trust: bool) -> list[tuple[Any, str]]:
+def problems_of(experiment: Experiment, folder: Path | None, trust: bool) -> list[tuple[Any, str]]:
     """Return all problems as pairs of an element and the end of a sentence about it.
 
     Args:
-        things: elements from :func:`everything`; for a file with errors, those that could be read.
+        experiment: the experiment.
         folder: folder of the experiment.
         trust: whether trials outside the folder, and their code, may be loaded.
     """
-    things = list(things)
-    found = [*skip_unreadable(*(check for thing in things for check in _problems(thing)))]
-    found += skip_unreadable(*(_shown(thing, folder) for thing in things if has_kind(thing, Screen)))
-    entries = [thing for thing in things if has_kind(thing, TrialEntry)]
-    sources = readable(entries, "source")
-    read = {source: _trial(source, folder, trust) for source in dict.fromkeys(source for _, source in sources)}
-    return found + [(entries[k], sentence) for k, source in sources for sentence in read[source]]
+    things = everything(experiment)
+    found = [problem for thing in things for check in _problems(thing) for problem in check]
+    found += [problem for thing in things if isinstance(thing, Screen) for problem in _shown(thing, folder)]
+    entries = [thing for thing in things if isinstance(thing, TrialEntry)]
+    read = {source: _trial(source, folder, trust) for source in dict.fromkeys(entry.source for entry in entries)}
+    return found + [(entry, sentence) for entry in entries for sentence in read[entry.source]]
 
 
 def _problems(thing: Any) -> Iterator[Found]:
-    if issubclass(kind_of(thing), Question):
+    if isinstance(thing, Question):
         yield _asked(thing)
-    if has_kind(thing, Screen):
+    if isinstance(thing, Screen):
         yield _twice(thing.questions, "question of this screen")
-    if has_kind(thing, Block):
-        for _, entries in readable([thing], "trials"):
-            yield _twice(entries, "trial of this block")
-            yield from (_twice((*entry.before, *entry.after), "screen of this trial") for entry in entries)
-    if has_kind(thing, Experiment):
+    if isinstance(thing, Block):
+        yield _twice(thing.trials, "trial of this block")
+        yield from (_twice((*entry.before, *entry.after), "screen of this trial") for entry in thing.trials)
+    if isinstance(thing, Experiment):
         yield from _whole(thing)
 
 
@@ -165,17 +160,17 @@ def _asked(question: Question) -> Found:
 
 
 def _whole(experiment: Experiment) -> Iterator[Found]:
-    blocks = [block for _, there in readable([experiment], "blocks") for block in there]
+    blocks = experiment.blocks
     yield _twice(blocks, "block")
     outer = [*experiment.instructions, *experiment.endings, *(s for block in blocks for s in block.screens)]
     yield _twice(outer, "screen")
-    entries = [entry for _, there in readable(blocks, "trials") for entry in there]
+    entries = [entry for block in blocks for entry in block.trials]
     yield from (_taken(screen, outer) for entry in entries for screen in (*entry.before, *entry.after))
     yield _too_many(experiment)
 
 
 def _taken(screen: Screen, outer: Sequence[Screen]) -> Found:
-    if screen.name in [name for _, name in readable(outer, "name")]:
+    if screen.name in [other.name for other in outer]:
         yield screen, f"name {screen.name!r} is already used by a screen outside this trial; names must differ"
 
 
@@ -187,10 +182,10 @@ def _too_many(experiment: Experiment) -> Found:
 
 def _twice(things: Sequence[Any], what: str) -> Found:
     count: Counter[str] = Counter()
-    for k, name in readable(things, "name"):
-        count[name] += 1
-        if count[name] > 1:
-            yield things[k], f"name {name!r} is already used by another {what}; names must differ"
+    for thing in things:
+        count[thing.name] += 1
+        if count[thing.name] > 1:
+            yield thing, f"name {thing.name!r} is already used by another {what}; names must differ"
 
 
 def _shown(screen: Screen, folder: Path | None) -> Found:

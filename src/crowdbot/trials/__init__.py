@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from .journey import Direction, Exit, Journey, Point, Portal, Zone
     from .notation import Points, plain
     from .parser import check_trial, parse_trial
-    from .partial_element import has_kind, kind_of, readable, skip_unreadable
     from .people import Group, SourceSpec, Spawner
     from .placement.appearance import PeopleAppearance, people_appearance, trial_bodies, trial_clips
     from .placement.expansion import expand_spawners
@@ -181,7 +180,6 @@ __all__ = [
     "expand_sweeps",
     "floor_plan",
     "floor_plan_of_xml",
-    "has_kind",
     "have_same_kinds",
     "import_dxf",
     "import_hunavsim",
@@ -193,7 +191,6 @@ __all__ = [
     "is_area_file",
     "is_code",
     "joint_positions",
-    "kind_of",
     "load_builtin_trial",
     "load_layout",
     "load_trial",
@@ -213,7 +210,6 @@ __all__ = [
     "plan_of",
     "quote_value",
     "read_trial_bytes",
-    "readable",
     "recorded_trial",
     "recording_files",
     "remarks_at_end",
@@ -224,7 +220,6 @@ __all__ = [
     "robot_place_problem",
     "robot_reactions",
     "schema",
-    "skip_unreadable",
     "trial_bodies",
     "trial_clips",
     "trial_remarks",

@@ -5,18 +5,17 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError, UnreadableValue, find_class, sources_of
 
-from .fields import FieldProblem, attribute, check, children, quote_value
+from .fields import attribute, check, children, quote_value
 from .files.trial_files import read_beside, resolve_file
-from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
+from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 from .notation import NAME, Points
-from .robots.reaction import ReactionSpec, check_shares, share_problems
+from .robots.reaction import ReactionSpec, check_shares
 
 if TYPE_CHECKING:
     from crowdbot.humans import BodyPose, PoseSource, PoseTrack
@@ -75,13 +74,7 @@ class Agent:
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
-        check_shares(self)
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of bodies and activities, independent of other problems of the element."""
-        found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found] + share_problems(values)
+        check_shares(self.reactions)
 
     @property
     def count(self) -> int:
@@ -176,22 +169,6 @@ class Avatar:
         if self.source != "external" and not (self.x is None and self.y is None):
             raise InputError(f'x and y need source="external"; here the {self.source} gives the place')
 
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of the body, the file and the code, independent of other problems of the element."""
-        found: list[FieldProblem] = [((), sentence) for sentence in word_problems(values.get("body", ""), "")]
-        try:
-            if values.get("file"):
-                resolve_file(values["file"], values["folder"], values["trust"])
-        except InputError as error:
-            found.append((("file",), f"file={quote_value(values['file'])} {error}"))
-        try:
-            if values.get("function"):
-                find_pose_source(values["function"], values["folder"], values["trust"])
-        except InputError as error:
-            found.append((("function",), f"function={quote_value(values['function'])} {error}"))
-        return found
-
     def pose_source(self) -> PoseSource:
         """Return the source of the pose; a file is read once.
 
@@ -202,9 +179,7 @@ class Avatar:
         from crowdbot.humans import BodyPose, PoseTrack
 
         if self.source == "external":
-            if self.x is None or self.y is None:  # a problem that is reported already
-                raise UnreadableValue("x, y")
-            start = BodyPose(self.x, self.y, self.heading)
+            start = BodyPose(self.x or 0.0, self.y or 0.0, self.heading)  # both are given, see __post_init__
             parts = self.part_timeout
             return PoseTrack.of(
                 [], [], start=start, extrapolation=self.timeout, max_speed=self.max_speed, part_timeout=parts

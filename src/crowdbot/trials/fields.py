@@ -13,16 +13,12 @@ import math
 import re
 import types
 import typing
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core import Bounds, InputError, did_you_mean
 
-from .partial_element import PartialElement
-
-FieldProblem = tuple[Collection[str], str]
-"""A problem from ``mistakes(values)`` of an element: the names of the unusable fields, and a sentence."""
 LARGEST = 1e6
 """Largest number in a trial, in any unit."""
 
@@ -126,7 +122,6 @@ class FieldSpec:
         max: maximum number of child elements.
         elements: classes of the child elements by XML name.
         into: conversion between child elements and one value, see :func:`children`.
-        optional: whether the value may be None.
     """
 
     name: str
@@ -141,7 +136,6 @@ class FieldSpec:
     max: int = 1
     elements: Mapping[str, Any] = field(default_factory=dict)
     into: Any = None
-    optional: bool = False
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -237,7 +231,6 @@ def _part(field: dataclasses.Field[Any], hint: Any) -> FieldSpec:
         row.get("max", 1),
         elements if row["role"] in ("child", "children") else {},
         row.get("into"),
-        type(None) in typing.get_args(hint),
     )
 
 
@@ -250,12 +243,9 @@ def _without_none(hint: Any) -> Any:
 def check(element: Any) -> None:
     """Convert the fields of an element to their types; raise :class:`InputError` if a value is not allowed.
 
-    Called in ``__post_init__``. Lists become tuples, and numbers become distributions if the field is one. The reader
-    has already checked the fields of a partial element.
+    Called in ``__post_init__``. Lists become tuples, and numbers become distributions if the field is one.
     """
     cls: type = type(element)
-    if isinstance(element, PartialElement):
-        return
     for part in outline(cls):
         value = getattr(element, part.name)
         if part.role == "attribute":

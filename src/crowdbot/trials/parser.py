@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Collection
+import functools
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core import Element, TrialError
 
-from .crowd import Crowd, Crowds
 from .fields import element_word
-from .partial_element import has_kind, kind_of
 from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
@@ -39,7 +38,8 @@ def parse_trial(
             name them.
 
     Raises:
-        TrialError: the trial has errors; one sentence per error, in the order of the lines.
+        TrialError: the trial has errors; one sentence per error, in the order of the lines. Names, sizes and places are
+            checked once all values are allowed.
 
     >>> parse_trial('<trial name="t" duration="-1"><crowd type="orca" time-horizn="2"/></trial>')
     Traceback (most recent call last):
@@ -56,11 +56,13 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, reciprocal, name
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     reader = XmlReader(place, folder or Path.cwd(), trust)
     result = _read(reader, root, None)
-    for sweep, sentence in sweep_problems(root, Trial, result.value.sweeps, _variant_problems(reader, result, None)):
+    result.raise_problems()
+    trial: Trial = result.value
+    variant_problems = functools.partial(_variant_problems, reader, None)
+    for sweep, sentence in sweep_problems(root, Trial, trial.sweeps, variant_problems):
         result.report(sweep, sentence)
     result.raise_problems()
-    assert isinstance(result.value, Trial)
-    return dataclasses.replace(result.value, folder=folder)
+    return dataclasses.replace(trial, folder=folder)
 
 
 def check_trial(trial: Trial, seed: int | None = None) -> None:
@@ -70,32 +72,30 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
         trial: made in Python or read.
         seed: seed of the placement of people (default: the seed of the trial).
     """
-    found = problems_of(trial, Crowds.spread(trial.crowd), seed)
+    found = problems_of(trial, seed)
     sentences = [f"trial {trial.name!r}: {_describe(thing)} {sentence}" for thing, sentence in found]
     if trial.sweeps and not sentences:
         reader, root = XmlReader(trial.name, trial.folder or Path.cwd(), True), element_of(trial)
-        problems = _variant_problems(reader, ReaderResult(trial.name, root), seed)
-        sentences = [sentence for _, sentence in sweep_problems(root, Trial, trial.sweeps, problems)]
+        variant_problems = functools.partial(_variant_problems, reader, seed)
+        sentences = [sentence for _, sentence in sweep_problems(root, Trial, trial.sweeps, variant_problems)]
     if sentences:
         raise TrialError(*sentences)
 
 
 def _read(reader: XmlReader, root: Element, seed: int | None) -> ReaderResult:
-    """Return a trial, partial if it has a problem, with every problem; ``seed`` as in :func:`check_trial`."""
+    """Return a trial, or its problems; ``seed`` as in :func:`check_trial`."""
     result = reader.read(Trial, root)
-    crowds = [one for one in result.elements if has_kind(one, Crowd)]
-    for thing, sentence in problems_of(result.value, crowds, seed):
+    for thing, sentence in problems_of(result.value, seed) if result.value else ():
         result.report(thing, sentence)
     return result
 
 
-def _variant_problems(reader: XmlReader, base: ReaderResult, seed: int | None) -> Callable[[Element], list[str]]:
-    """Return a function that lists the problems of a variant that the trial itself does not have."""
-    return lambda root: _read(reader, root, seed).new_sentences(base.problems)
+def _variant_problems(reader: XmlReader, seed: int | None, root: Element) -> list[str]:
+    return _read(reader, root, seed).sentences
 
 
 def _describe(thing: Any) -> str:
-    if has_kind(thing, Obstacle):
+    if isinstance(thing, Obstacle):
         return "obstacle"
     name = getattr(thing, "name", "")
-    return element_word(kind_of(thing)) + (f" {name!r}" if name else "")
+    return element_word(type(thing)) + (f" {name!r}" if name else "")

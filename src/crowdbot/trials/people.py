@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from crowdbot import world
 from crowdbot.core import InputError
 
 from .distribution import Distribution
-from .fields import FieldProblem, attribute, check, children
-from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
+from .fields import attribute, check, children
+from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 from .journey import Journey
 from .notation import Points
-from .robots.reaction import ReactionSpec, check_shares, share_problems
+from .robots.reaction import ReactionSpec, check_shares
 
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
 """Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
@@ -84,29 +83,15 @@ class Spawner:
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
-        check_shares(self)
-        for _, sentence in _layout_problems(vars(self)):
-            raise InputError(f"Spawner: {sentence}")
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of bodies, activities, reactions and the layout, independent of each other."""
-        found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found] + share_problems(values) + _layout_problems(values)
-
-
-def _layout_problems(values: Mapping[str, Any]) -> list[FieldProblem]:
-    """Return what does not go with the layout of a spawner."""
-    layout, found = values.get("layout", "zone"), list[FieldProblem]()
-    if layout != "circle" and values.get("noise"):
-        found.append((("noise",), 'noise acts with layout="circle" only'))
-    if layout not in ("circle", "halves"):
-        return found
-    if values.get("groups"):
-        found.append((("groups",), f'layout="{layout}" has no groups'))
-    if values.get("journey") or values.get("stands") or values.get("arrival", "leave") != "stay":
-        found.append((("layout",), f'layout="{layout}" needs a goal zone and arrival="stay"'))
-    return found
+        check_shares(self.reactions)
+        if self.layout != "circle" and self.noise:
+            raise InputError('Spawner: noise acts with layout="circle" only')
+        if self.layout not in ("circle", "halves"):
+            return
+        if self.groups:
+            raise InputError(f'Spawner: layout="{self.layout}" has no groups')
+        if self.journey or self.stands or self.arrival != "stay":
+            raise InputError(f'Spawner: layout="{self.layout}" needs a goal zone and arrival="stay"')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,13 +127,7 @@ class SourceSpec:
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
-        check_shares(self)
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of bodies, activities and reactions, independent of other problems of the element."""
-        found = word_problems(values.get("body", ""), values.get("activity", ""))
-        return [((), sentence) for sentence in found] + share_problems(values)
+        check_shares(self.reactions)
 
     def arrival_count(self, duration: float) -> float:
         """Return the number of arrivals within a duration [s]: the maximum if regular, the mean if random."""

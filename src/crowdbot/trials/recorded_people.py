@@ -6,7 +6,6 @@ import dataclasses
 import functools
 import itertools
 import warnings
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,7 +17,7 @@ from crowdbot.data import AGENTS, FILE_OPTIONS, UNITS, parse_columns, split_colu
 from crowdbot.typing import Floats
 
 from .distribution import Distribution
-from .fields import FieldProblem, attribute, check, quote_value
+from .fields import attribute, check
 from .files.trial_files import recording_files, resolve_file, resolve_recording
 from .people import BODY_RADIUS
 
@@ -86,27 +85,6 @@ class RecordedPeople:
         parse_columns(split_columns(self.columns))
         if self.scale is not None and self.homography:
             raise InputError("scale and homography are given; coordinates have one scale")
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of the file name and of the ids, independent of other problems of the element."""
-        found: list[FieldProblem] = []
-        try:
-            _ids(values.get("exclude", ""))
-        except InputError as error:
-            found.append((("exclude",), str(error)))
-        try:
-            parse_columns(split_columns(values.get("columns", "")))
-        except InputError as error:
-            found.append((("columns",), str(error)))
-        if values.get("scale") is not None and values.get("homography"):
-            found.append((("scale", "homography"), "scale and homography are given; coordinates have one scale"))
-        try:
-            if "data" in values:
-                resolve_recording(values["data"], values["folder"], values["trust"])
-        except InputError as error:
-            found.append((("data",), f"data={quote_value(values['data'])} {error}"))
-        return found
 
     def excluded_ids(self) -> frozenset[int]:
         """Return the excluded ids."""

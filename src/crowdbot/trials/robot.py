@@ -32,10 +32,9 @@ from crowdbot.typing import Floats
 from crowdbot.world import Drive, Twists, builtin_robots, frame, roll_pitch_yaw
 
 from .faults.fault import FaultSpec, fault_problems
-from .fields import FieldProblem, attribute, check, child, children, mounted_field, plugin_field, quote_value
+from .fields import attribute, check, child, children, mounted_field, plugin_field, quote_value
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
-from .partial_element import readable
 from .robots.joint_target import JointTarget, joint_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose, mirrored_pose
@@ -284,7 +283,7 @@ class RobotSpec:
     def __post_init__(self) -> None:
         usual = self.usual
         for name in ("radius", "height", "mass", "latency", "drive"):
-            if (0, None) in readable([self], name):
+            if getattr(self, name) is None:
                 object.__setattr__(self, name, usual.get(name))
         if self.drive is None:
             raise InputError(f"needs the element <drive>, or a type such as {builtin_robots()[0]}")
@@ -327,19 +326,6 @@ class RobotSpec:
             if mount.link and mount.link not in links:
                 raise InputError(f"sensor {mount.name!r} is on link={quote_value(mount.link)}, which does not exist"
                                  f"{did_you_mean(mount.link, links)}")  # fmt: skip
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of the type and of the rider, independent of other problems of the element."""
-        said: list[FieldProblem] = []
-        seat = False
-        try:
-            if values.get("type"):
-                seat = robot_of_type(values["type"], values["folder"], values["trust"]).seat
-        except InputError as error:
-            said = [(("type",), str(error))]
-            seat = True  # unknown: only the words of the rider are checked
-        return [*said, *(((), one) for one in rider_problems(values.get("rider", ""), seat))]
 
     @property
     def usual(self) -> Mapping[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,13 +16,12 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Walls
 from crowdbot.world import add_rings
 
-from .fields import FieldProblem, attribute, check, children, quote_value
+from .fields import attribute, check, children, quote_value
 from .files.stage_maps import FARTHEST_FILE, FilePlacement, area_of, map_of
 from .files.trial_files import resolve_file
 from .ground.door import Door
 from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
 from .notation import Points
-from .partial_element import readable
 from .props import Appearance, Cube, Light, Prop, Table, Tree
 
 if TYPE_CHECKING:
@@ -115,41 +114,21 @@ class Stage:
         check(self)
         if self.walkable and self.area:
             raise InputError(TWO_GROUNDS)
-        for _, sentence in _placement_problems(vars(self)):
-            raise InputError(f"Stage: {sentence}")
+        if len(self.offset) > 1:
+            raise InputError(f"Stage: offset={quote_value(self.offset)} must be one point x,y")
+        for name in ("offset", "rotation"):
+            if getattr(self, name) and not (self.area or self.map):
+                raise InputError(f"Stage: {name} {NOTHING_PLACED}")
+        try:
+            if self.building:
+                resolve_file(self.building, self.folder, self.trust)
+        except InputError as error:
+            raise InputError(f"building={quote_value(self.building)}: {error}") from None
         for word, name in (("area", "_ground"), ("map", "_map")):
             try:
                 getattr(self, name)
             except InputError as error:
                 raise InputError(f"{word}={quote_value(getattr(self, word))} {error}") from None
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of area and map, independent of other problems of the element."""
-        said: list[FieldProblem] = []
-        if values.get("walkable") and values.get("area"):
-            said.append((("walkable", "area"), TWO_GROUNDS))
-        misplaced = _placement_problems(values)
-        said += misplaced
-        if misplaced or not {"offset", "rotation"} <= values.keys():  # the files may be anywhere
-            return said
-        placement = _placement(values["offset"], values["rotation"])
-        folder, trust = values["folder"], values["trust"]
-        if values.get("building"):
-            try:
-                resolve_file(values["building"], folder, trust)
-            except InputError as error:
-                said.append((("building",), f"building={quote_value(values['building'])}: {error}"))
-        for word, read in (
-            ("area", functools.partial(area_of, placement=placement)),
-            ("map", functools.partial(map_of, unknown=values.get("unknown", "free"), placement=placement)),
-        ):
-            try:
-                if values.get(word):
-                    read(values[word], folder=folder, trust=trust)
-            except InputError as error:
-                said.append(((word,), f"{word}={quote_value(values[word])} {error}"))
-        return said
 
     @property
     def bounded(self) -> bool:
@@ -159,16 +138,15 @@ class Stage:
     @property
     def rings(self) -> tuple[NDArray[np.float64], ...]:
         """Rings ``[N, 2]`` [m] as :meth:`crowdbot.core.Walls.of` takes them: solid on the left of each edge."""
-        walls = [points for _, points in readable(self.walls, "points")]
-        lines = [np.array(points[k : k + 2]) for points in walls for k in range(len(points) - 1)]
-        solids = [_orient(points, counter_clockwise=True) for _, points in readable(self.obstacles, "points")]
+        lines = [np.array(wall.points[k : k + 2]) for wall in self.walls for k in range(len(wall.points) - 1)]
+        solids = [_orient(one.points, counter_clockwise=True) for one in self.obstacles]
         around = [_orient(self.walkable, counter_clockwise=False)] if self.walkable else []
         fixed = (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
-        return (*fixed, *(ring for _, ring in readable(self.props, "ring")))
+        return (*fixed, *(prop.ring for prop in self.props))
 
     def as_walls(self, props: bool = True) -> Walls:
         """Return the walls of a scene on this stage, with the outlines of props or without."""
-        return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(readable(self.props, "ring"))])
+        return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(self.props)])
 
     def walking_walls(self) -> Walls:
         """Return the walls for the paths of people: with edges that are too high for them, without doors."""
@@ -258,15 +236,15 @@ class Stage:
     def _blocks(self) -> Any:
         import shapely
 
-        solids = [area(points) for _, points in readable(self.obstacles, "points")]
-        props = [shapely.Polygon(ring) for _, ring in readable(self.props, "ring")]
+        solids = [area(obstacle.points) for obstacle in self.obstacles]
+        props = [shapely.Polygon(prop.ring) for prop in self.props]
         return shapely.STRtree([*solids, *self._map, *props])
 
     @functools.cached_property
     def _block_names(self) -> list[str]:
         """Names of the blocks in messages."""
-        solids = [f"obstacle {k + 1} of the stage" for k, _ in readable(self.obstacles, "points")]
-        props = [f"prop {k + 1} of the stage" for k, _ in readable(self.props, "ring")]
+        solids = [f"obstacle {k + 1} of the stage" for k in range(len(self.obstacles))]
+        props = [f"prop {k + 1} of the stage" for k in range(len(self.props))]
         return [*solids, *("a solid of the map" for _ in self._map), *props]
 
     @functools.cached_property
@@ -274,7 +252,7 @@ class Stage:
         """Spatial index of walls, borders of the walkable area, and blocks."""
         import shapely
 
-        lines = [np.array(points) for _, points in readable(self.walls, "points")]
+        lines = [np.array(wall.points) for wall in self.walls]
         lines += [np.array([*self.walkable, self.walkable[0]])] if self.walkable else []
         lines += [np.array(ring.coords) for part in self._ground for ring in (part.exterior, *part.interiors)]
         edges = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
@@ -285,16 +263,6 @@ class Stage:
 def _placement(offset: Points, rotation: float) -> FilePlacement:
     """Return the place of area and map in the trial."""
     return FilePlacement(offset[0] if offset else (0.0, 0.0), rotation)
-
-
-def _placement_problems(values: Mapping[str, Any]) -> list[FieldProblem]:
-    """Return what is wrong with the offset and the rotation of a stage."""
-    found = list[FieldProblem]()
-    if len(values.get("offset", ())) > 1:
-        found.append((("offset",), f"offset={quote_value(values['offset'])} must be one point x,y"))
-    if not values.get("area", "") and not values.get("map", ""):
-        found += [((name,), f"{name} {NOTHING_PLACED}") for name in ("offset", "rotation") if values.get(name)]
-    return found
 
 
 def _rings(polygons: Sequence[Any], solid: bool) -> list[NDArray[np.float64]]:

@@ -6,14 +6,12 @@ import copy
 import itertools
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from crowdbot.core import Element, InputError
 
-from .fields import FieldProblem, attribute, check, quote_value
-from .partial_element import readable
+from .fields import attribute, check, quote_value
 from .value_path import set_value, set_values
 
 MOST_VARIANTS = 10_000
@@ -45,15 +43,6 @@ class Sweep:
         check(self)
         _each(self.values)
 
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of the values, independent of other problems of the element."""
-        try:
-            _each(values.get("values", "1"))
-        except InputError as error:
-            return [(("values",), str(error))]
-        return []
-
     @property
     def each(self) -> tuple[str, ...]:
         """The values."""
@@ -83,19 +72,18 @@ def sweep_problems(
     Args:
         root: XML tree of the trial.
         kind: class of the trial.
-        sweeps: the sweeps, possibly partial.
-        others: function that returns the problems of a variant that the trial itself does not have.
+        sweeps: the sweeps of the trial, which itself has no problem.
+        others: function that returns the problems of a variant.
     """
     found: list[tuple[Sweep, str]] = []
     there = []
     for sweep in sweeps:
-        for _, path in readable([sweep], "path"):
-            try:
-                set_value(copy.deepcopy(root), kind, path, "")
-            except InputError as error:
-                found.append((sweep, f"{quote_value(path)} {error}"))
-                continue
-            there += [sweep for _ in readable([sweep], "each")]
+        try:
+            set_value(copy.deepcopy(root), kind, sweep.path, "")
+        except InputError as error:
+            found.append((sweep, f"{quote_value(sweep.path)} {error}"))
+        else:
+            there.append(sweep)
     count = math.prod(len(sweep.each) for sweep in there)
     if count > MOST_VARIANTS:
         return [*found, (there[-1], f"makes {count} variants together with other sweeps, at most {MOST_VARIANTS}")]

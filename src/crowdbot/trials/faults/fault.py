@@ -11,7 +11,6 @@ from typing import Any
 from crowdbot.core import InputError
 from crowdbot.trials.fields import attribute, check, mounted_field
 from crowdbot.trials.notation import NAME
-from crowdbot.trials.partial_element import readable
 from crowdbot.typing import Bools, Floats
 
 LONG = 86_400.0
@@ -111,9 +110,9 @@ class FaultSpec:
 
 def fault_problems(faults: Sequence[Any], sensors: Sequence[Any]) -> Iterator[str]:
     """Yield the problems of the faults of a robot: unknown sensors."""
-    names = [name for _, name in readable(sensors, "name")]
-    for _, fault in readable(faults, "fault"):
-        sensor = getattr(fault, "sensor", "")
+    names = [mount.name for mount in sensors]
+    for one in faults:
+        sensor = getattr(one.fault, "sensor", "")
         if sensor and sensor not in names:
             known = ", ".join(names) or "none"
             yield f"has a fault of the sensor {sensor!r}, which it lacks; its sensors are {known}"

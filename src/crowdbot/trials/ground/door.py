@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from crowdbot import world
 from crowdbot.core import InputError, parse_number
-from crowdbot.trials.fields import FieldProblem, attribute, check
+from crowdbot.trials.fields import attribute, check
 from crowdbot.trials.notation import Points
 
 
@@ -46,30 +44,20 @@ class Door:
 
     def __post_init__(self) -> None:
         check(self)
-        for _, sentence in self.mistakes(vars(self)):
-            raise InputError(sentence)
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return the problems of the points, the times and the opening."""
-        said: list[FieldProblem] = []
-        points, opening = values.get("points"), values.get("opening", "order")
-        if points is not None and (len(points) != 2 or points[0] == points[1]):
-            said.append((("points",), f"points has {len(points)} points; give two different ones, the hinge first"))
+        if len(self.points) != 2 or self.points[0] == self.points[1]:
+            raise InputError(f"points has {len(self.points)} points; give two different ones, the hinge first")
         try:
-            given = _times(values.get("times") or "")
+            given = _times(self.times)
         except InputError as error:
-            said.append((("times",), f'times="{str(values.get("times"))[:60]}" {error}'))
-            given = (0.0,)
-        if opening == "schedule" and not given:
-            said.append((("times", "opening"), 'opening="schedule" needs times, such as times="5 20"'))
-        if opening != "schedule" and values.get("times"):
-            said.append((("times", "opening"), f'times need opening="schedule", not "{opening}"'))
-        if opening == "push" and values.get("kind") == "sliding":
-            said.append((("kind", "opening"), 'opening="push" needs a hinged door'))
-        if values.get("angle") == 0.0:
-            said.append((("angle",), "angle must not be 0"))
-        return said
+            raise InputError(f'times="{self.times[:60]}" {error}') from None
+        if self.opening == "schedule" and not given:
+            raise InputError('opening="schedule" needs times, such as times="5 20"')
+        if self.opening != "schedule" and self.times:
+            raise InputError(f'times need opening="schedule", not "{self.opening}"')
+        if self.opening == "push" and self.kind == "sliding":
+            raise InputError('opening="push" needs a hinged door')
+        if self.angle == 0.0:
+            raise InputError("angle must not be 0")
 
     def leaf(self) -> world.DoorLeaf:
         """Return the door of a world."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from crowdbot import world
 from crowdbot.trials.fields import attribute, check
@@ -123,15 +123,11 @@ UNEVEN = (
 GroundElement = Ramp | Stairs | Platform | Threshold
 
 
-def ground_of(elements: Any) -> world.Ground | None:
-    """Return the ground of elements, of which unreadable ones are left out; None without parts.
+def ground_of(elements: Sequence[GroundElement]) -> world.Ground | None:
+    """Return the ground of elements; None without parts.
 
     >>> ground_of((Platform(x=0, y=0, length=2, width=2),)).height([[0.0, 0.0], [3.0, 0.0]]).tolist()
     [0.12, 0.0]
     """
-    parts = [part for one in elements for part in _parts(one)]
+    parts = [part for one in elements for part in one.parts()]
     return world.Ground(tuple(parts)) if parts else None
-
-
-def _parts(element: Any) -> list[world.GroundPart]:
-    return element.parts() if isinstance(element, GroundElement) else []

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core import kernel, next_uniform, stream_states
-from crowdbot.trials.partial_element import readable
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.typing import Floats, Ints, Words
@@ -42,12 +41,8 @@ class LayoutDraw(NamedTuple):
 
 
 def goal_discs(robots: Sequence[RobotSpec]) -> Floats:
-    """Return ``[R, 3]`` goals x, y and radii of the robots whose goals are readable [m]."""
-    rows = []
-    for k, goal in readable(robots, "goal"):
-        numbers = [value for name in ("x", "y") for _, value in readable([goal], name)]
-        if len(numbers) == 2:
-            rows.append((*numbers, robots[k].radius))
+    """Return ``[R, 3]`` goals x, y and radii of robots [m]."""
+    rows = [(robot.goal.x, robot.goal.y, robot.radius) for robot in robots]
     return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
 

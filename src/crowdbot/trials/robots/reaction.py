@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.trials.fields import FieldProblem, attribute, check
-from crowdbot.trials.partial_element import readable
+from crowdbot.trials.fields import attribute, check
 from crowdbot.world import REACTIONS, RobotReaction, RobotReactions
 
 
@@ -60,20 +59,11 @@ class ReactionSpec:
 
     def __post_init__(self) -> None:
         check(self)
-        for _, sentence in self.mistakes(vars(self)):
-            raise InputError(sentence)
-
-    @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return attributes that do not act with the kind of reaction, or exclude each other."""
-        found: list[FieldProblem] = []
-        kind = values.get("type")
         for name in ("repulsion", "range"):
-            if kind in REACTIONS and kind != "scared" and values.get(name) is not None:
-                found.append(((name,), f'{name} acts with type="scared" only, not with type="{kind}"'))
-        if values.get("once") and values.get("pause") is not None:
-            found.append((("pause",), "pause has no effect with once"))
-        return found
+            if self.type != "scared" and getattr(self, name) is not None:
+                raise InputError(f'{name} acts with type="scared" only, not with type="{self.type}"')
+        if self.once and self.pause is not None:
+            raise InputError("pause has no effect with once")
 
     def reaction(self) -> RobotReaction:
         """Return the reaction of a world."""
@@ -82,18 +72,10 @@ class ReactionSpec:
         return RobotReaction(self.type, *numbers, self.field_of_view)
 
 
-def share_problems(values: Mapping[str, Any]) -> list[FieldProblem]:
-    """Return the problem of the shares of an element with reactions, if there is one."""
-    shares = [share for _, share in readable(values.get("reactions", ()), "share")]
-    if sum(shares) <= 1.0 + 1e-9:
-        return []
-    return [((), f"the shares of the reactions are {sum(shares):g} together, they must be at most 1")]
-
-
-def check_shares(element: Any) -> None:
+def check_shares(reactions: Sequence[ReactionSpec]) -> None:
     """Raise :class:`InputError` if the shares of the reactions of an element are more than 1 together."""
-    for _, sentence in share_problems(vars(element)):
-        raise InputError(sentence)
+    if (total := sum(reaction.share for reaction in reactions)) > 1.0 + 1e-9:
+        raise InputError(f"the shares of the reactions are {total:g} together, they must be at most 1")
 
 
 def robot_reactions(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from crowdbot.core import InputError, UnreadableValue, sources_of
 from crowdbot.navigation import ExternalNavigator, Navigator
 from crowdbot.trials.agent import find_pose_source, load_poses
-from crowdbot.trials.fields import FieldProblem, attribute, check, quote_value
+from crowdbot.trials.fields import attribute, check, quote_value
 from crowdbot.trials.files.trial_files import resolve_file
 
 if TYPE_CHECKING:
@@ -66,19 +66,6 @@ class RobotPose:
                 raise InputError(f'source="{name}" needs the attribute {name}')
             if given and not needs:
                 raise InputError(f'{name}={quote_value(given)} needs source="{name}", not source="{self.source}"')
-
-    @staticmethod
-    def mistakes(values: dict[str, Any]) -> list[FieldProblem]:
-        """Return the problems of the file and the code, independent of other problems of the element."""
-        found: list[FieldProblem] = []
-        rows = (("file", resolve_file), ("function", find_pose_source))
-        for name, find in rows:
-            try:
-                if values.get(name):
-                    find(values[name], values["folder"], values["trust"])
-            except InputError as error:
-                found.append(((name,), f"{name}={quote_value(values[name])} {error}"))
-        return found
 
     def source_from(self, x: float, y: float, heading: float) -> PoseSource:
         """Return the source of the pose of a robot that starts at a place [m] and heading [rad]; a file is read once.

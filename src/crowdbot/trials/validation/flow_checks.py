@@ -14,7 +14,6 @@ from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Direction, Exit, Point, Portal, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import has_kind, plugin_with_defaults, readable
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.spawn_placement import points_in
 from crowdbot.trials.randomized_model import RandomizedModel
@@ -23,7 +22,7 @@ from crowdbot.trials.trial import Trial
 from crowdbot.typing import Floats
 from crowdbot.world import Router
 
-from .context import DeclaredNames, Problems, ValidationContext
+from .context import Problems, ValidationContext
 
 BATCHES = 30
 """Number of batches of points in which a place with room for a body is searched."""
@@ -42,47 +41,44 @@ def names(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of duplicate and unknown names, and of people with no goal or two."""
     trial = checked.trial
     yield duplicate_names(trial.journeys, "journey")
-    yield from (_endless_stops(stops) for _, stops in readable(trial.journeys, "stops"))
+    yield from (_endless_stops(journey.stops) for journey in trial.journeys)
     yield _more_than_fit(trial)
+    journeys, crowds = ([one.name for one in ones if one.name] for ones in (trial.journeys, checked.crowds))
     for one in checked.people:
         yield _goals(one)
         yield _arrival(one)
-        yield _unknown_name(one, "journey", DeclaredNames.of(trial.journeys))
-        yield _unknown_name(one, "crowd", checked.crowd_names)
-        if has_kind(one, SourceSpec):
+        yield _unknown_name(one, "journey", journeys)
+        yield _unknown_name(one, "crowd", crowds)
+        if isinstance(one, SourceSpec):
             yield _arrival_times(one)
-        if has_kind(one, Agent):
+        if isinstance(one, Agent):
             yield from (_parameter(checked, one, parameter) for parameter in one.parameters)
-    yield from (_unknown_name(one, "crowd", checked.crowd_names) for one in trial.recorded)
+    yield from (_unknown_name(one, "crowd", crowds) for one in trial.recorded)
 
 
 def duplicate_names(things: Sequence[Any], others: str) -> Problems:
     """Yield every element with the name of an earlier one."""
     known: set[str] = set()
-    for k, name in readable(things, "name"):
-        if name in known:
-            yield things[k], f"name {name!r} is already used by another {others}; names must differ"
-        known.add(name)
+    for thing in things:
+        if thing.name in known:
+            yield thing, f"name {thing.name!r} is already used by another {others}; names must differ"
+        known.add(thing.name)
 
 
 def flows(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of zones without room and of unreachable stops."""
     trial = checked.trial
-    yield _routing(checked)
-    yield from (_entrance(checked.stage, source) for source in trial.sources)
-    for _, stops in readable(trial.journeys, "stops"):
-        yield from (_stop(checked, stop) for stop in stops)
+    if why := checked.no_routing:
+        yield iter([(trial.routing, f"is impossible on this stage: {why}")])
+        return
+    yield from (_entrance(trial.stage, source) for source in trial.sources)
+    yield from (_stop(checked, stop) for journey in trial.journeys for stop in journey.stops)
     coming: tuple[Spawner | SourceSpec, ...] = (*trial.spawners, *trial.sources)
     yield from (_exit_overlap(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
     yield from (_portal_loop(*pair) for pair in itertools.combinations(trial.portals, 2))
     yield from (_first_leg(checked, one) for one in checked.people)
-    for _, stops in readable(trial.journeys, "stops"):
-        yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
-
-
-def _routing(checked: ValidationContext) -> Problems:
-    if why := checked.no_routing:
-        yield checked.trial.routing, f"is impossible on this stage: {why}"
+    for journey in trial.journeys:
+        yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(journey.stops), 2))
 
 
 def _portal_loop(first: Portal, second: Portal) -> Problems:
@@ -96,18 +92,18 @@ def _portal_loop(first: Portal, second: Portal) -> Problems:
         yield first, f"leads into the portal{name} that leads back into it; move its exit out of that zone"
 
 
-def _unknown_name(one: Any, word: str, names: DeclaredNames) -> Problems:
+def _unknown_name(one: Any, word: str, names: Sequence[str]) -> Problems:
     """Yield an element that refers to an unknown name."""
-    if (name := getattr(one, word)) and names.lack(name):
-        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name"
-        yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
+    if (name := getattr(one, word)) and name not in names:
+        there = f"there are {', '.join(names)}" if names else f"no {word} has a name"
+        yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names)}; {there}"
 
 
 def _goals(one: Any) -> Problems:
-    stands = has_kind(one, Agent) or getattr(one, "stands", False)
+    stands = isinstance(one, Agent) or getattr(one, "stands", False)
     if one.goal and one.journey:
         yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
-    elif stands and has_kind(one, Spawner) and (one.goal or one.journey):
+    elif stands and isinstance(one, Spawner) and (one.goal or one.journey):
         yield one, 'has stands="true" and a goal or a journey; leave out one of them'
     elif not (one.goal or one.journey or stands):
         yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
@@ -137,8 +133,8 @@ def _parameter(checked: ValidationContext, agent: Agent, parameter: AgentParamet
     crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
     if not crowds:
         return
-    model = plugin_with_defaults(crowds[0].model)
-    model = model.model if isinstance(model, RandomizedModel) else model
+    given = crowds[0].model
+    model = given.model if isinstance(given, RandomizedModel) else given
     if unread_fields(type(model)):  # defaults that are known only when code runs
         return
     draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
@@ -148,16 +144,15 @@ def _parameter(checked: ValidationContext, agent: Agent, parameter: AgentParamet
 
 def _endless_stops(stops: Sequence[Any]) -> Problems:
     for k, stop in enumerate(stops[:-1]):
-        if has_kind(stop, Direction):
+        if isinstance(stop, Direction):
             yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
 
 
 def _entrance(stage: Stage, source: SourceSpec) -> Problems:
-    for label, zones in (("zone", readable([source], "zone")), ("goal zone", readable([source], "goal"))):
-        for _, points in zones:
-            if points and (block := stage.block_in(area(points), OVERLAP)):
-                yield source, f"{label} reaches into {block}; move it, or cut it there"
-                return
+    for label, points in (("zone", source.zone), ("goal zone", source.goal)):
+        if points and (block := stage.block_in(area(points), OVERLAP)):
+            yield source, f"{label} reaches into {block}; move it, or cut it there"
+            return
     radius = source.radius.extent[1]
     batches = itertools.islice(points_in(source.zone, stream(0, "check", "source")), BATCHES)
     if not any(np.any(stage.clearance(points) >= radius) for points in batches):
@@ -168,21 +163,21 @@ def _entrance(stage: Stage, source: SourceSpec) -> Problems:
         )
 
 
-def inaccessible_stops(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
-    """Yield a stop at an inaccessible point: the stop, its field, and the end of a sentence."""
+def inaccessible_stops(trial: Trial) -> Problems:
+    """Yield the stops of journeys at inaccessible points."""
     import shapely
 
-    if has_kind(stop, Point):
+    for stop in (stop for journey in trial.journeys for stop in journey.stops if isinstance(stop, Point)):
         point = shapely.Point(stop.x, stop.y)
-        if not checked.stage.holds(point):
-            yield stop, "x", f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
-        elif block := checked.stage.block_around(point):
-            yield stop, "x", f"at {stop.x:g},{stop.y:g} lies inside {block}"
+        if not trial.stage.holds(point):
+            yield stop, f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
+        elif block := trial.stage.block_around(point):
+            yield stop, f"at {stop.x:g},{stop.y:g} lies inside {block}"
 
 
 def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problems:
-    stage = checked.stage
-    if has_kind(stop, Zone):
+    stage = checked.trial.stage
+    if isinstance(stop, Zone):
         if stop.aim == "nearest" or checked.router is None:
             if block := stage.block_in(area(stop.points), OVERLAP):
                 yield stop, f"zone reaches into {block}; move it, or cut it there"
@@ -207,9 +202,9 @@ class _Place(NamedTuple):
     @classmethod
     def of(cls, stop: Point | Direction | Zone) -> _Place | None:
         """Return the place of a stop; None for a direction."""
-        if has_kind(stop, Point):
+        if isinstance(stop, Point):
             return cls(Points.of([(stop.x, stop.y)]))
-        return cls(stop.points, stop.aim == "random") if has_kind(stop, Zone) else None
+        return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
 
 
 def _first_leg(checked: ValidationContext, one: Any) -> Problems:
@@ -220,11 +215,11 @@ def _first_leg(checked: ValidationContext, one: Any) -> Problems:
     journey = next((journey for journey in checked.trial.journeys if journey.name == one.journey), None)
     first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
     what = (
-        ("the goal" if has_kind(one, Agent) else "the goal zone")
+        ("the goal" if isinstance(one, Agent) else "the goal zone")
         if one.goal
         else f"the first stop of journey {one.journey!r}"
     )
-    start, word = (one.zone, "zone") if not has_kind(one, Agent) else (Points.of([one.position]), "place")
+    start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
     if first and not _is_path(router, _Place(start), first):
         yield one, f"there is no path from its {word} to {what} for a body of radius {router.radius:g} m"
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from crowdbot.trials.ground.elements import UNEVEN, ground_of
-from crowdbot.trials.partial_element import readable
 from crowdbot.trials.robot import RobotSpec
 from crowdbot.trials.trial import Trial
 from crowdbot.typing import Floats
@@ -19,7 +18,7 @@ from .flow_checks import duplicate_names
 
 def ground_problems(checked: ValidationContext) -> Iterator[Problems]:
     """Yield the problems of uneven ground, doors, and the places of robots."""
-    yield duplicate_names([door for _, doors in readable([checked.trial.stage], "doors") for door in doors], "door")
+    yield duplicate_names(checked.trial.stage.doors, "door")
     yield _planar(checked.trial)
     for robot in checked.trial.robots:
         yield _raised_start(checked, robot)
@@ -32,7 +31,7 @@ def _planar(trial: Trial) -> Problems:
 
 def _raised_start(checked: ValidationContext, robot: RobotSpec) -> Problems:
     """Yield a robot whose base is pulled along the floor but that starts on raised ground."""
-    ground = ground_of(checked.stage.ground)
+    ground = ground_of(checked.trial.stage.ground)
     if checked.trial.world != "physics" or ground is None or robot.body.base != "planar":
         return
     if float(ground.support(robot.position, robot.radius)) > 0.0:

@@ -14,19 +14,9 @@ from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
 from crowdbot.navigation import PathPlanner
 from crowdbot.trials.agent import Avatar
 from crowdbot.trials.cameras.camera import Camera
-from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import (
-    fill_defaults,
-    has_kind,
-    is_partial,
-    original_element,
-    readable,
-    skip_unreadable,
-)
-from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.placement.robot_gaps import gap_to_robot, gap_to_walls, smallest_reach, start_outline
 from crowdbot.trials.recorded_people import RecordedPeople
@@ -35,7 +25,7 @@ from crowdbot.trials.robots.robot_pose import start_problem
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
 
-from .context import DeclaredNames, Problems, ValidationContext
+from .context import Problems, ValidationContext, skip_unreadable
 from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_stops, names
 from .ground_checks import ground_problems
 from .rates import fitting, misfits
@@ -79,21 +69,22 @@ class Area:
         return block and f"{self.label} lies inside {block}; it is not accessible, move it"
 
 
-def areas(checked: ValidationContext) -> list[Area]:
-    """Return the readable zones of a trial."""
-    trial, found = checked.trial, list[Area]()
+def areas(trial: Trial) -> list[Area]:
+    """Return the zones of a trial."""
+    found = list[Area]()
     for group, label, smallest in ((trial.spawners, "spawn zone", 0.0), (trial.sources, "zone", SMALLEST)):
         found += _zones(group, "zone", label, smallest)
         found += _zones(group, "goal", "goal zone", smallest)
-    for _, stops in readable(trial.journeys, "stops"):
-        found += _zones([stop for stop in stops if has_kind(stop, Zone)], "points", "zone", SMALLEST)
+    stops = [stop for journey in trial.journeys for stop in journey.stops if isinstance(stop, Zone)]
+    found += _zones(stops, "points", "zone", SMALLEST)
     found += _zones(trial.portals, "zone", "zone", SMALLEST, border=True)
     found += _zones(trial.agents, "goal_zone", "goal zone", 0.0)
     return found + _zones(trial.exits, "zone", "zone", SMALLEST, border=True)
 
 
 def _zones(things: Sequence[Any], name: str, label: str, smallest: float, border: bool = False) -> list[Area]:
-    return [Area(things[k], name, label, points, smallest, border) for k, points in readable(things, name) if points]
+    rows = ((thing, getattr(thing, name)) for thing in things)
+    return [Area(thing, name, label, points, smallest, border) for thing, points in rows if points]
 
 
 def shape_problem(points: Points, smallest: float = 0.0) -> str:
@@ -113,102 +104,67 @@ def shape_problem(points: Points, smallest: float = 0.0) -> str:
 MOST_VALUES = 100_000_000
 """Largest number of recorded scenes times agents; an episode is kept in memory."""
 MOST_ARRIVALS = 100_000
-NOBODY = Spawner(count=0, zone=Points.parse("0,0 1,0 0,1"))
-"""Replaces a spawner that could not be read; the random streams of the other spawners stay the same."""
 WALKING = 1.6
 """Assumed speed [m/s] of people between portals."""
 
 
-def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) -> list[tuple[Any, str]]:
-    """Return every problem: the element, and the end of a sentence.
+def problems_of(trial: Trial, seed: int | None = None) -> list[tuple[Any, str]]:
+    """Return the problems of a trial: the element, and the end of a sentence.
+
+    Places are checked if names, periods, sizes and shapes have no problem, paths and room for people if places have
+    none: otherwise one problem would be reported as many.
 
     Args:
-        trial: the trial, partial if it has a problem.
-        crowds: the crowds in its file.
+        trial: the trial.
         seed: seed of the placement of people (default: the seed of the trial).
     """
-    checked = ValidationContext(trial, crowds, seed)
-    too_large = [*skip_unreadable(*_size(checked))]
+    checked, zones = ValidationContext(trial, seed), areas(trial)
     found = [
         *skip_unreadable(
             _periods(checked),
             *(_exact_rates(trial, robot) for robot in trial.robots),
-            *_names(checked),
+            *_names(trial),
             *names(checked),
             *ground_problems(checked),
+            *_size(trial),
         ),
-        *too_large,
+        *((one.element, wrong) for one in zones if (wrong := one.shape_problem())),
+        *_stage_shapes(trial.stage),
     ]
-    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.shape_problem())]
-    shapes += _stage_shapes(trial.stage)
-    checked = checked.without(_by_thing(shapes))
-    lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.place_problem(checked.stage))]
-    lost += [
-        row
-        for _, stops in readable(trial.journeys, "stops")
-        for row in skip_unreadable(*(inaccessible_stops(checked, s) for s in stops))
+    found = found or [
+        *((one.element, wrong) for one in zones if (wrong := one.place_problem(trial.stage))),
+        *skip_unreadable(
+            inaccessible_stops(trial),
+            *_robots(trial.stage, trial.robots),
+            *(_recording(trial, one) for one in trial.recorded),
+            *(_avatar(one) for one in trial.avatars),
+            *(start_problem(robot) for robot in trial.robots),
+        ),
     ]
-    checked = checked.without(_by_thing(lost))
-    found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
-    found += [*skip_unreadable(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
-    found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
-    found += [*skip_unreadable(*(_avatar(one) for one in trial.avatars))]
-    found += [*skip_unreadable(*(start_problem(robot) for _, robot in _mirrored(trial.robots)))]
-    if not too_large:
-        found += _places(checked)
-    return [(original_element(thing), sentence) for thing, sentence in found]
-
-
-def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
-    """Return the fields with a problem by the ``id`` of their element."""
-    found: dict[int, set[str]] = {}
-    for thing, name, _ in rows:
-        found.setdefault(id(thing), set()).add(name)
-    return found
+    return found or [*skip_unreadable(*flows(checked)), *_places(checked)]
 
 
 def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
-    """Return the people who do not fit. Without unreadable people and groups there is only more room."""
+    """Return the people who do not fit; an avatar whose place only code of the user knows takes no room."""
     trial = checked.trial
-    spawners = [_filled_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
-    agents = [_filled_or(agent, None, "x", "y", "radius") for agent in trial.agents]
-    robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
-    walks = []
-    for one in trial.recorded:
-        with contextlib.suppress(UnreadableValue, InputError):
-            walks.append((fill_defaults(one, "data"), one.walks(trial.duration)))
-    there = [agent for agent in agents if agent is not None]
     avatars: list[Avatar] = []
     for avatar in trial.avatars:
-        with contextlib.suppress(UnreadableValue, InputError):
+        with contextlib.suppress(UnreadableValue):
             avatar.start_pose()
             avatars.append(avatar)
-    return place(checked.stage, spawners, robots, checked.seed, there, walks, avatars)[1]
+    walks = [(one, one.walks(trial.duration)) for one in trial.recorded]
+    return place(trial.stage, trial.spawners, trial.robots, checked.seed, trial.agents, walks, avatars)[1]
 
 
-def _filled_or(thing: Any, other: Any, *required: str, **replacements: Any) -> Any:
-    """Return what :func:`fill_defaults` does, ``other`` if a required field could not be read."""
-    try:
-        return fill_defaults(thing, *required, **replacements)
-    except UnreadableValue:
-        return other
-
-
-def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
+def _recording(trial: Trial, one: RecordedPeople) -> Problems:
     """Yield why a recording cannot be replayed."""
     try:
-        durations = [duration for _, duration in readable([checked.trial], "duration")]
-        walks = one.walks(*durations) if durations else one.walks(0.0) or ("unknown",)
+        walks = one.walks(trial.duration)
     except InputError as error:
         yield one, f"data={quote_value(one.data)} {error}"
         return
     if not walks:
         yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
-
-
-def _mirrored(robots: Sequence[RobotSpec]) -> Iterator[tuple[int, RobotSpec]]:
-    """Yield the robots with a readable pose from outside."""
-    yield from ((k, robots[k]) for k, pose in readable(robots, "pose") if pose is not None and not is_partial(pose))
 
 
 def _avatar(one: Avatar) -> Problems:
@@ -222,8 +178,7 @@ def _avatar(one: Avatar) -> Problems:
 def _periods(checked: ValidationContext) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
-    periods = [*skip_unreadable(*_all_periods(trial))]
-    for thing, name, period in periods:
+    for thing, name, period in _all_periods(trial):
         try:
             clock.schedule(period)
         except InputError:
@@ -235,24 +190,15 @@ def _periods(checked: ValidationContext) -> Problems:
             )
 
 
-def _all_periods(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
+def _all_periods(trial: Trial) -> Iterator[tuple[Any, str, float]]:
     """Yield all periods: the element, a name, and the period [s]."""
-    yield _period(trial.recording, "period", "recording period")
-    yield _period(trial.recording, "markers", "recording markers")
+    yield trial.recording, "recording period", trial.recording.period
+    yield trial.recording, "recording markers", trial.recording.markers
     for robot in trial.robots:
-        yield _period(robot, "control_period", "control-period")
-        yield from (_sensor_periods(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
-
-
-def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, float]]:
-    yield thing, called, getattr(thing, name)
-
-
-def _sensor_periods(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
-    if mount in robot.type_sensors:
-        return
-    if not math.isnan(mount.sensor.rate):  # known only when code runs
-        yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
+        yield robot, "control-period", robot.control_period
+        for mount in robot.sensors:
+            if mount not in robot.type_sensors and not math.isnan(mount.sensor.rate):  # nan: known when code runs
+                yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
 
 
 def _exact_rates(trial: Trial, robot: RobotSpec) -> Problems:
@@ -279,13 +225,12 @@ def _too_frequent(robot: RobotSpec, step: float) -> list[Mount]:
     return found
 
 
-def _names(checked: ValidationContext) -> Iterator[Problems]:
-    yield duplicate_names(checked.trial.robots, "robot")
-    yield duplicate_names(checked.trial.avatars, "avatar")
-    for _, mounts in readable(checked.trial.robots, "sensors"):
-        yield duplicate_names(mounts, "sensor of this robot")
-    yield duplicate_names(checked.trial.cameras, "camera")
-    yield from (_camera(checked.trial.robots, camera) for camera in checked.trial.cameras)
+def _names(trial: Trial) -> Iterator[Problems]:
+    yield duplicate_names(trial.robots, "robot")
+    yield duplicate_names(trial.avatars, "avatar")
+    yield from (duplicate_names(robot.sensors, "sensor of this robot") for robot in trial.robots)
+    yield duplicate_names(trial.cameras, "camera")
+    yield from (_camera(trial.robots, camera) for camera in trial.cameras)
 
 
 def _camera(robots: Sequence[RobotSpec], camera: Camera) -> Problems:
@@ -293,22 +238,19 @@ def _camera(robots: Sequence[RobotSpec], camera: Camera) -> Problems:
         if camera.link:
             yield camera, f"link={quote_value(camera.link)} needs robot: the name of the robot whose link it is"
         return
-    names = DeclaredNames.of(robots)
-    bodies = {name: robots[k] for k, name in readable(robots, "name")}
-    if names.lack(camera.robot):
+    bodies = {robot.name: robot for robot in robots}
+    if camera.robot not in bodies:
         near = did_you_mean(camera.robot, bodies)
         yield camera, f"robot={quote_value(camera.robot)} is not a robot{near}; there are {', '.join(bodies) or 'none'}"
-    elif camera.robot not in bodies:
-        return
     elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
         near = did_you_mean(camera.link, links)
         yield camera, f"link={quote_value(camera.link)} is not a link of robot {camera.robot!r}{near}"
 
 
-def _size(checked: ValidationContext) -> Iterator[Problems]:
-    yield _too_long(checked.trial)
-    yield _too_many(checked)
-    yield _too_large(checked)
+def _size(trial: Trial) -> Iterator[Problems]:
+    yield _too_long(trial)
+    yield _too_many(trial)
+    yield _too_large(trial)
 
 
 def _too_long(trial: Trial) -> Problems:
@@ -319,18 +261,17 @@ def _too_long(trial: Trial) -> Problems:
         )
 
 
-def _too_many(checked: ValidationContext) -> Problems:
-    coming = arrival_count(checked.trial)
+def _too_many(trial: Trial) -> Problems:
+    coming = arrival_count(trial)
     if coming > MOST_ARRIVALS:
         yield (
-            checked.trial.sources[0],
+            trial.sources[0],
             f"produces about {coming} people together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
             " an earlier end or fewer at most",
         )
 
 
-def _too_large(checked: ValidationContext) -> Problems:
-    trial = checked.trial
+def _too_large(trial: Trial) -> Problems:
     first = len(trial.agents) + len(trial.avatars) + sum(spawner.count for spawner in trial.spawners)
     coming = arrival_count(trial)
     agents = first + coming + len(trial.robots) + _through(trial, first + coming)
@@ -351,25 +292,23 @@ def _through(trial: Trial, people: int) -> int:
     return round(people * trial.duration * WALKING / max(shortest, 0.1))
 
 
-def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
-    """Return the parts of a stage with an invalid shape: the element, the field, and the end of a sentence."""
-    obstacles = [
-        (stage.obstacles[k], "points", shape_problem(points)) for k, points in readable(stage.obstacles, "points")
-    ]
-    ground = [(stage, "walkable", shape_problem(points)) for _, points in readable([stage], "walkable") if points]
-    return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]
+def _stage_shapes(stage: Stage) -> list[tuple[Any, str]]:
+    """Return the parts of a stage with an invalid shape: the element, and the end of a sentence."""
+    rows: list[tuple[Any, str, Points]] = [(obstacle, "points", obstacle.points) for obstacle in stage.obstacles]
+    rows += [(stage, "walkable", stage.walkable)] if stage.walkable else []
+    return [(thing, f"{name} {wrong}") for thing, name, points in rows if (wrong := shape_problem(points))]
 
 
 def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
     for k, robot in enumerate(robots):
         yield _robot_place(stage, robot, "starts", robot)
-        yield from (_robot_place(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
+        yield _robot_place(stage, robot, "has its goal", robot.goal)
         yield from (_robot_overlap(robot, other) for other in robots[:k])
         yield _robot_path(stage, robot)
 
 
 def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
-    reach = there.tolerance if has_kind(there, RobotGoal) else 0.0
+    reach = there.tolerance if isinstance(there, RobotGoal) else 0.0
     if problem := robot_place_problem(stage, robot, there.position, reach, starts=there is robot):
         yield robot, f"{word} {problem}"
 

@@ -23,12 +23,10 @@ from crowdbot.core import (
     from_attributes,
     nearest_name,
     parse_number,
-    required_fields,
 )
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
 from crowdbot.trials.notation import unit_hint
-from crowdbot.trials.partial_element import PartialElement, is_partial, post_init_problem, readable
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
 from .reader_result import ReaderResult
@@ -37,10 +35,10 @@ ROOT = "trial"
 
 
 class XmlReader:
-    """Reads a tree of XML elements as frozen dataclasses, and collects every problem.
+    """Reads a tree of XML elements as frozen dataclasses, and collects the problems of all their values.
 
-    A misspelt name is read as the nearest known name. An element with a problem is read as a
-    :class:`~crowdbot.trials.partial_element.PartialElement`, so no problem hides another.
+    A misspelt name is read as the nearest known name, so that it is one problem. An element is made if it and those in
+    it have no problem; what elements mean together is checked afterwards.
 
     Args:
         place: name of the file for messages.
@@ -53,7 +51,7 @@ class XmlReader:
         self._result = ReaderResult(place, Element(ROOT))
 
     def read(self, cls: type, root: Element) -> ReaderResult:
-        """Return the object of the root element, the objects of all elements, and every problem."""
+        """Return the object of the root element, None if there is a problem, and every problem."""
         self._result = ReaderResult(self.place, root)
         self._result.value = self._element(cls, root)
         return self._result
@@ -62,28 +60,24 @@ class XmlReader:
         self._result.add_problem(element, sentence)
 
     def _element(self, cls: type, element: Element) -> Any:
-        """Return the object of an element, a partial one if the element or one in it has a problem."""
+        """Return the object of an element, None if the element or one in it has a problem."""
         before = len(self._result.problems)
         parts = outline(cls)
         kind = self._check_names(element, parts)
-        values = self._attributes(element, parts, kind)
-        values |= self._children(element, parts)
-        unreadable = set()
+        values = self._attributes(element, parts, kind) | self._children(element, parts)
         for part in parts:
-            if part.name in values:
+            if part.name in values or _is_present(element, part):
                 continue
-            if not _is_present(element, part) and not part.required:
-                values[part.name] = part.default
-                continue
-            unreadable.add(part.name)
-            if not _is_present(element, part):
+            if part.required:
                 self._report(element, f"needs {_describe(part)}")
-        values |= self._files(cls, element)
-        if hasattr(cls, "mistakes"):
-            for names, sentence in cls.mistakes(values):
-                self._report(element, sentence)
-                unreadable |= set(names)
-        made = self._build(cls, element, values, unreadable, before)
+            values[part.name] = part.default
+        if len(self._result.problems) > before:
+            return None
+        try:
+            made = cls(**values, **self._files(cls, element))
+        except InputError as error:
+            self._report(element, str(error).removeprefix(f"{cls.__name__}: "))
+            return None
         self._result.add_element(made, element)
         return made
 
@@ -98,21 +92,6 @@ class XmlReader:
     def _trusts(self, name: str) -> bool:
         """Return whether a value of ``type`` may name code or a folder outside of the folder of the trial."""
         return self.trust if isinstance(self.trust, bool) else name in self.trust
-
-    def _build(self, cls: type, element: Element, values: dict[str, Any], unreadable: set[str], before: int) -> Any:
-        """Return the object of an element; a partial one if there are more problems than ``before``, or one now."""
-        known = [problem.sentence for problem in self._result.problems[before:]]
-        if not known:
-            try:
-                return cls(**values)
-            except InputError as error:
-                self._report(element, str(error))
-        made = PartialElement(cls, values, unreadable)
-        sentence = post_init_problem(made)
-        if known and sentence and sentence not in known:
-            self._report(element, sentence)
-        made.mark_unreadable({p.name for p in outline(cls) if not p.optional and (0, None) in readable([made], p.name)})
-        return made
 
     def _check_names(self, element: Element, parts: tuple[FieldSpec, ...]) -> type | None:
         """Correct misspelt attributes; return the class of the plugin in the element, None if unknown."""
@@ -146,16 +125,13 @@ class XmlReader:
                 continue
             if part.name in values:
                 self._report(element, f"has the attribute {part.word} twice")
-            value = None
             try:
-                value = _convert(text, part.kind)
-                wrong = part.wrong(value)
+                values[part.name] = _convert(text, part.kind)
+                wrong = part.wrong(values[part.name])
             except InputError as error:
                 wrong = f"{error}{unit_hint(text, part.unit) if part.kind is not str else ''}"
             if wrong:
                 self._report(element, f"{part.word}={quote_value(text)} {wrong}")
-            if not wrong or (part.word == "name" and value is not None):  # other elements may refer to a wrong name
-                values[part.name] = value
         mount = next((part for part in parts if part.role == "mounted"), None)
         if mount is not None and mount.plug is not None:
             values[mount.name] = self._plug(mount.plug, kind, element, rest)
@@ -196,11 +172,12 @@ class XmlReader:
             return made[0] if made else None
         if part.into is None:
             return tuple(made) if made or not part.required else None
+        if not made or any(one is None for one in made):
+            return None
         problems = list(part.into.problems(made))
         for k, sentence in problems:
             self._result.report(made[k], sentence)
-        right = made and not problems and not any(is_partial(one) for one in made)
-        return part.into.gather(made) if right else None
+        return None if problems else part.into.gather(made)
 
     def _child(self, part: FieldSpec, inner: Element) -> Any:
         if part.plug is None:
@@ -228,27 +205,23 @@ class XmlReader:
             return known.get(nearest_name(name, known))
 
     def _plug(self, what: PluginSpec, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
-        """Return the plugin with these attributes, a partial one if there is a problem."""
+        """Return the plugin with these attributes, None if there is a problem."""
         if cls is None:
-            return PartialElement(what.places()[1], {}, None)
+            return None
         texts = {key: text for key, text in attributes.items() if key != "type"}
         draws = {key: text for key, text in texts.items() if what.drawn and is_drawn(text)}
         fixed = {key: text for key, text in texts.items() if key not in draws}
-        wrong = attribute_problems(cls, fixed)
-        made, more = _build_plugin(cls, {key: text for key, text in fixed.items() if key not in wrong})
-        wrong |= more
+        made, wrong = None, [*attribute_problems(cls, fixed).values()]
+        if not wrong:
+            try:
+                made = from_attributes(cls, fixed)
+            except InputError as error:
+                wrong = [str(error)]
         if made is not None and draws:
-            randomized, more = _randomize(made, draws)
-            wrong |= more
-            made = made if wrong else randomized
-        for sentence in wrong.values():
+            made, wrong = _randomize(made, draws)
+        for sentence in wrong:
             self._report(element, sentence)
-        if not wrong and made is not None:
-            return made
-        unreadable = {key.replace("-", "_") for key in wrong}
-        values = {} if made is None else {field.name: getattr(made, field.name) for field in dataclasses.fields(cls)}
-        unreadable |= {field.name for field in dataclasses.fields(cls) if field.name not in values}
-        return PartialElement(cls, values, unreadable, default=made)
+        return made
 
 
 def _is_present(element: Element, part: FieldSpec) -> bool:
@@ -260,49 +233,19 @@ def _is_present(element: Element, part: FieldSpec) -> bool:
     return any(inner.tag in part.words for inner in element.children)
 
 
-def _build_plugin(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:
-    """Return the plugin with these attributes, None if it needs others, and a problem for each attribute left out.
-
-    A class reports one problem at a time. The attribute without which the same problem is not reported again is the
-    cause: it is left out, and the others are checked.
-    """
-    if attribute_problems(cls, attributes):
-        return None, {}
-    problems: dict[str, str] = {}
-    while True:
-        made, sentence = _from_attributes(cls, attributes)
-        if not sentence:
-            return made, problems
-        needed = {name.replace("_", "-") for name in required_fields(cls)}
-        for cause in attributes:
-            fewer = {key: text for key, text in attributes.items() if key != cause}
-            if cause.replace("_", "-") not in needed and _from_attributes(cls, fewer)[1] != sentence:
-                break
-        else:
-            return None, problems | {"": sentence}
-        problems[cause], attributes = sentence, fewer
-
-
-def _from_attributes(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
-    """Return the plugin with these attributes, or None and the problem."""
-    try:
-        return from_attributes(cls, attributes), ""
-    except InputError as error:
-        return None, str(error)
-
-
-def _randomize(model: Any, draws: dict[str, str]) -> tuple[Any, dict[str, str]]:
+def _randomize(model: Any, draws: dict[str, str]) -> tuple[Any, list[str]]:
     """Return a model with distributions for some of its parameters, or None and a problem for each parameter."""
-    distributions, wrong = {}, {}
+    distributions: dict[str, Distribution] = {}
+    wrong: list[str] = []
     for key, text in draws.items():
         try:
-            one = Distribution.parse(text)
-            distributions[key.replace("-", "_")] = one
-            if sentences := [*RandomizedModel.problems(model, {key.replace("-", "_"): one})]:
-                wrong[key] = sentences[0]
+            one = {key.replace("-", "_"): Distribution.parse(text)}
         except InputError as error:
-            wrong[key] = f"{key[:40]}={quote_value(text)} {error}"
-    return (None, wrong) if wrong else (RandomizedModel(model, tuple(distributions.items())), {})
+            wrong.append(f"{key[:40]}={quote_value(text)} {error}")
+            continue
+        wrong += [*RandomizedModel.problems(model, one)][:1]
+        distributions |= one
+    return (None, wrong) if wrong else (RandomizedModel(model, tuple(distributions.items())), [])
 
 
 def _convert(text: str, kind: Any) -> Any:

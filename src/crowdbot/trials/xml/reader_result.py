@@ -1,8 +1,7 @@
-"""Reader result: the elements that were read from an XML file, and every problem that was found."""
+"""Reader result: the object that was read from an XML file, and every problem that was found."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from crowdbot.core import Element, TrialError
@@ -19,29 +18,26 @@ class ReaderProblem(NamedTuple):
 
 
 class ReaderResult:
-    """The elements that were read from an XML file, and every problem that was found.
+    """The object that was read from an XML file, and every problem that was found.
 
     Args:
         place: name of the file for messages.
         root: root of the XML tree; problems of unknown elements are reported there.
 
     Attributes:
-        value: the object of the root element, partial if there is a problem in it.
-        elements: all objects, inner ones before outer ones.
+        value: the object of the root element, None if there is a problem in it.
         problems: of the elements, in the order in which they were found.
     """
 
     def __init__(self, place: str, root: Element) -> None:
         self.place, self.root = place, root
         self.value: Any = None
-        self.elements: list[Any] = []
         self.problems: list[ReaderProblem] = []
-        self._sources: dict[int, Element] = {}
+        self._sources: dict[int, tuple[Any, Element]] = {}
 
     def add_element(self, made: Any, source: Element) -> None:
         """Add the object that was made of an XML element."""
-        self.elements.append(made)  # keeps the object alive, so its id stays unique
-        self._sources[id(made)] = source
+        self._sources[id(made)] = (made, source)  # keeps the object alive, so its id stays unique
 
     def add_problem(self, source: Element, sentence: str) -> None:
         """Add a problem of an XML element."""
@@ -49,11 +45,12 @@ class ReaderResult:
 
     def report(self, made: Any, sentence: str) -> None:
         """Add a problem of an object."""
-        self.add_problem(self._sources.get(id(made), self.root), sentence)
+        self.add_problem(self._sources.get(id(made), (None, self.root))[1], sentence)
 
-    def new_sentences(self, known: Collection[ReaderProblem]) -> list[str]:
-        """Return a sentence for every problem that is not known."""
-        return [f"<{one.tag}> {one.sentence}" for one in self.problems if one not in known]
+    @property
+    def sentences(self) -> list[str]:
+        """A sentence for every problem, without the line."""
+        return [f"<{one.tag}> {one.sentence}" for one in self.problems]
 
     def raise_problems(self) -> None:
         """Raise :class:`TrialError` with every problem in the order of the lines; return if there is none."""
