@@ -36,6 +36,16 @@ def test_terminal_json_report_and_file_name_passage_and_robot(tmp_path, capsys, 
     cells = load_evaluation(tmp_path / "out" / "result.json").cells
     assert [cell.remarks for cell in cells] == [(REMARK,), ()]
     assert main([*words, "--json"]) == 0
+    page = (tmp_path / "out" / "report.html").read_text()
+    cause = (
+        "the robot is 0.60 m wide and the narrowest passage on its way 0.50 m, so it never arrived, and a small number"
+        " of contacts is no proof of safety"
+    )
+    assert page.count(f"not shown safe: {cause}.") == printed.count(f"not shown safe: {cause}.") == 1
+    assert [cell.protocol["narrow_passage"] for cell in cells] == [pytest.approx(0.5, abs=0.002), None]
+    assert "<td>control period [s]</td>" in page  # equal settings are rows
+    assert "<th>senses</th>" in page
+    assert "robot type" not in page
     assert [cell["remarks"] for cell in json.loads(capsys.readouterr().out)["cells"]] == [[REMARK], []]
 
 

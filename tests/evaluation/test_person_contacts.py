@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,9 @@ from crowdbot.evaluation import (
     CellResult,
     EvaluationResult,
     RunRow,
+    WorstRun,
     metric_unit,
+    not_dangerous,
     parse_statistic,
     person_contacts,
     worst_rows,
@@ -73,9 +76,25 @@ def test_the_worst_runs_are_contacts_then_closeness_then_no_arrival() -> None:
         (3, "clearance 0.10 m"),
         (4, "contact with a wall, nobody near"),
         (2, "timeout, clearance 0.60 m"),
-        (1, "clearance 0.40 m"),
     ]
     assert [run.seed for run, _ in worst_rows(cell(*rows))] == [6, 5, 3]
+    assert not not_dangerous(cell(*rows))
+
+
+def test_rows_without_a_dangerous_run_say_so_and_show_the_closest(tmp_path: Path) -> None:
+    values = {"person_collision": 0.0, "success": 1.0}
+    calm = cell(*(RunRow(k, "success", "", values | {"min_clearance": 0.3 + 0.1 * k}) for k in range(3)))
+    sentence = (
+        "no run was dangerous: no contact, no fall, all arrived, and the smallest clearance is 0.30 m"
+        " (dangerous: below 0.2 m)"
+    )
+    assert not_dangerous(calm) == sentence
+    ((closest, _),) = worst_rows(calm)
+    assert closest.seed == 0
+    drawing: dict[str, Any] = {"times": [], "agents": []}
+    run = WorstRun(calm, closest, drawing, same=True)
+    write_report(EvaluationResult((calm,)), tmp_path / "report.html", [parse_statistic("time-to-goal")], worst=[run])
+    assert f"<p>hall, orca: {sentence}.</p>" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -98,6 +117,7 @@ def test_the_page_begins_with_the_verdict_and_lists_contacts(tmp_path: Path) -> 
     write_report(result, tmp_path / "report.html", [parse_statistic("time-to-goal")])
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "In 1 run of hall with orca the robot touched a person in 1" in page
+    assert "Hardest contact with a person: seed 7, at the lower leg, 0.80 m/s, severity 3 (force over the limit" in page
     assert page.index("In 1 run of hall") < page.index("<table")
     assert "<th>time-to-goal [s]</th>" in page
     assert "<th>severity [force / limit]</th>" in page

@@ -136,6 +136,7 @@ if TYPE_CHECKING:
     from .verdict import runs_without_event as runs_without_event
     from .worst_run import PersonContact as PersonContact
     from .worst_run import WorstRun as WorstRun
+    from .worst_run import not_dangerous as not_dangerous
     from .worst_run import person_contacts as person_contacts
     from .worst_run import worst_rows as worst_rows
     from .worst_run import worst_runs as worst_runs

@@ -14,7 +14,15 @@ from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.metrics import LOG_FAMILIES
-from crowdbot.trials import Trial, blind_remarks, expand_sweeps, passage_remarks, remarks_at_end, trial_xml
+from crowdbot.trials import (
+    Trial,
+    blind_remarks,
+    expand_sweeps,
+    narrow_passage,
+    passage_remarks,
+    remarks_at_end,
+    trial_xml,
+)
 
 from .method import Method, own_method
 from .run_metrics import check_families
@@ -71,6 +79,8 @@ class EvaluationCell:
             "visible": robot.visible,
             "ghost": robot.ghost,
             "robot": robot.type or f"disc of {robot.radius:g} m",
+            "width": round(2.0 * robot.body.half_width, 3),
+            "narrow_passage": narrow_passage(self.variant, robot),
             "drive": type(robot.drive).__name__,
             "holonomic": robot.holonomic,
             "safety": robot.safety is not None,

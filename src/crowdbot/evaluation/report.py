@@ -21,7 +21,7 @@ from .result import CellResult, EvaluationResult
 from .statistic import Statistic, metric_unit
 from .sweep_effects import FactorEffect, factor_effects
 from .verdict import judge_cell
-from .worst_run import WorstRun, person_contacts
+from .worst_run import WorstRun, not_dangerous, person_contacts
 
 WIDTH, HEIGHT, MARGIN, STEP = 320, 220, 66, 64
 COLORS = ("#1b6ca8", "#c8553d", "#3a7d44", "#8e5ea2", "#b8860b", "#59636f")
@@ -92,6 +92,7 @@ MOST_CONTACTS = 10
 NO_SUCCESS = "<p>No robot arrived in any run, so there is nothing to compare.</p>"
 PROTOCOL_UNITS = {
     "margin": "m", "step": "s", "control_period": "s", "latency": "s", "duration": "s", "goal_tolerance": "m",
+    "width": "m", "narrow_passage": "m",
 }  # fmt: skip
 """Units of the columns of the protocol."""
 
@@ -137,6 +138,7 @@ def write_report(
         comparisons=_comparisons(comparisons),
         pareto=(pareto_svg(result.cells) or NO_SUCCESS) + _effects(result, statistics),
         failures=_again(again) + _failures(result),
+        calm=_calm(worst),
         runs="".join(f"<option value='{k}'>{html.escape(_title(run))}</option>" for k, run in enumerate(worst)),
         provenance=html.escape(json.dumps(dict(result.provenance), indent=1)),
         data=json.dumps([run.drawing for run in worst], allow_nan=False).replace("<", "\\u003c"),
@@ -157,7 +159,8 @@ def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) 
         verdict = judge_cell(cell, requirements)
         kind = "safe" if verdict.safe else "unsafe"
         notes = (*cell.remarks, realism_notice(cell.realism))
-        small = (*(f"Note: {note}" for note in notes if note), verdict.limit)
+        contacts = [f"Hardest contact with a person: {one.sentence}" for one in person_contacts(cell)[:1]]
+        small = (*contacts, *(f"Note: {note}" for note in notes if note), verdict.limit)
         limit = "".join(f"<br><small>{html.escape(text)}</small>" for text in small)
         parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
     return "".join(parts)
@@ -166,6 +169,17 @@ def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) 
 def _again(lines: Sequence[str]) -> str:
     text = html.escape("\n".join(lines))
     return f"<h2>Run the worst seeds again</h2><pre>{text}</pre>" if lines else ""
+
+
+def _calm(worst: Sequence[WorstRun]) -> str:
+    """Return which of the rows whose runs are played have no dangerous run."""
+    cells = {id(run.cell): run.cell for run in worst}.values()
+    lines = [
+        f"{', '.join(filter(None, (cell.trial, cell.method, cell.robot)))}: {calm}."
+        for cell in cells
+        if (calm := not_dangerous(cell))
+    ]
+    return "".join(f"<p>{html.escape(line)}</p>" for line in lines)
 
 
 def _title(run: WorstRun) -> str:
@@ -252,9 +266,15 @@ def _realism(cells: Sequence[CellResult]) -> str:
 
 
 def _protocol(cells: Sequence[CellResult]) -> str:
+    """Return the settings that all rows share, and those that differ beside each row."""
     keys = list(dict.fromkeys(key for cell in cells for key in cell.protocol))
-    rows = [[*_names(cell), *(_words(cell.protocol.get(key)) for key in keys)] for cell in cells]
-    return _table(["trial", "navigator", "robot type", *map(_protocol_title, keys)], rows)
+    values = {key: [_words(cell.protocol.get(key)) for cell in cells] for key in keys}
+    same = [[_protocol_title(key), values[key][0]] for key in keys if len({*values[key]}) == 1]
+    differ = [key for key in keys if len({*values[key]}) > 1]
+    rows = [[cell.trial, cell.method, *(values[key][k] for key in differ)] for k, cell in enumerate(cells)]
+    head = ["trial", "navigator", *map(_protocol_title, differ)]
+    shared = _table(["setting", "all rows" if len(cells) > 1 else "value"], same)
+    return shared + (_table(head, rows) if differ else "")
 
 
 def _protocol_title(key: str) -> str:

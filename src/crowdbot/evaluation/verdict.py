@@ -156,6 +156,12 @@ def _nothing_shown(cell: CellResult, missed: Estimate) -> str:
         return "there is no valid run"
     if cell.protocol.get("ghost"):
         return "the robot is a ghost, which nobody sees and which touches nothing"
+    passage = cell.protocol.get("narrow_passage")
+    if missed.value == 1.0 and passage is not None:
+        return (
+            f"the robot is {cell.protocol['width']:.2f} m wide and the narrowest passage on its way {passage:.2f} m, so"
+            " it never arrived, and a small number of contacts is no proof of safety"
+        )
     if cell.protocol.get("people") == 0:
         return "the trial has no people"
     if missed.value == 1.0:

@@ -20,6 +20,8 @@ RATE = 10.0
 """Largest number of pictures a second in the report."""
 ORDER = ("collision", "fall", "error", "timeout", "finished", "success")
 """Outcomes from the worst to the best."""
+NEAR = 0.2
+"""Clearance to a person [m] below which a run is dangerous: the discomfort distance of CrowdNav."""
 
 
 REGION = "impact_severity_"
@@ -55,6 +57,18 @@ class PersonContact(NamedTuple):
         if math.isnan(self.high):
             return "unknown"
         return f"{self.high:.2g}" if self.low == self.high else f"{self.low:.2g} to {self.high:.2g}"
+
+    @property
+    def sentence(self) -> str:
+        """Seed, body region, speed and severity.
+
+        >>> print(PersonContact(3, "hand", 2.0, 2.0, 0.5, "robot").sentence)
+        seed 3, at the hand, 0.50 m/s, severity 2 (force over the limit of ISO/TS 15066 for the body region)
+        """
+        where = f"at the {self.region}" if self.region else "at an unknown body region"
+        limit = "the body region" if self.region else "each region below the height of the robot"
+        about = f"force over the limit of ISO/TS 15066 for {limit}"
+        return f"seed {self.seed}, {where}, {self.speed:.2f} m/s, severity {self.severity} ({about})"
 
 
 class WorstRun(NamedTuple):
@@ -96,7 +110,8 @@ def worst_rows(cell: CellResult, count: int = 3) -> list[tuple[RunRow, str]]:
     """Return the worst runs of a row, and why each is there.
 
     First are the runs in which a person is touched or falls, the hardest first; then the run with the smallest
-    clearance to a person, the runs that do not arrive, and the others by their clearance.
+    clearance to a person, the runs that do not arrive, and the others by their clearance. Runs that are not dangerous
+    are left out, see :func:`is_dangerous`; if no run is, the one with the smallest clearance is the only one.
 
     Args:
         cell: the row.
@@ -104,9 +119,9 @@ def worst_rows(cell: CellResult, count: int = 3) -> list[tuple[RunRow, str]]:
 
     >>> from crowdbot.evaluation import CellResult
     >>> values = {"person_collision": 0.0, "success": 1.0}
-    >>> rows = tuple(RunRow(k, "success", "", values | {"min_clearance": 0.1 * k}) for k in (3, 2, 1))
-    >>> [(row.seed, reason) for row, reason in worst_rows(CellResult("hall", "orca", "", "", {}, rows), 2)]
-    [(1, 'clearance 0.10 m'), (2, 'clearance 0.20 m')]
+    >>> rows = tuple(RunRow(k, "success", "", values | {"min_clearance": 0.1 * k - 0.05}) for k in (3, 2, 1))
+    >>> [(row.seed, reason) for row, reason in worst_rows(CellResult("hall", "orca", "", "", {}, rows), 3)]
+    [(1, 'clearance 0.05 m'), (2, 'clearance 0.15 m')]
     """
     contacts = {one.seed: one for one in person_contacts(cell)}
     order = [*contacts]
@@ -115,7 +130,28 @@ def worst_rows(cell: CellResult, count: int = 3) -> list[tuple[RunRow, str]]:
     missed = sorted((row for row in close if row.metrics.get("success") != 1.0), key=_missed)
     order += [row.seed for row in (*close[:1], *missed, *close)]
     rows = {row.seed: row for row in cell.valid}
-    return [(rows[seed], _reason(rows[seed], contacts.get(seed))) for seed in [*dict.fromkeys(order)][:count]]
+    order = [*dict.fromkeys(order)]
+    order = [seed for seed in order if is_dangerous(rows[seed])] or order[:1]
+    return [(rows[seed], _reason(rows[seed], contacts.get(seed))) for seed in order[:count]]
+
+
+def is_dangerous(row: RunRow) -> bool:
+    """Whether a run has a contact or a fall, does not arrive, or comes nearer than 0.2 m to a person.
+
+    >>> is_dangerous(RunRow(0, "success", "", {"success": 1.0, "min_clearance": 0.4}))
+    False
+    """
+    touched = any(row.metrics.get(f"{kind}_collision") == 1.0 for kind in ("wall", "object", "robot"))
+    return _hurts(row) or touched or row.metrics.get("success") != 1.0 or _clearance(row) < NEAR
+
+
+def not_dangerous(cell: CellResult) -> str:
+    """Return a sentence if no run of a row is dangerous, with the smallest clearance; empty otherwise."""
+    if not cell.valid or any(is_dangerous(row) for row in cell.valid):
+        return ""
+    least = min(_clearance(row) for row in cell.valid)
+    nearest = f"the smallest clearance is {least:.2f} m" if math.isfinite(least) else "nobody came near"
+    return f"no run was dangerous: no contact, no fall, all arrived, and {nearest} (dangerous: below {NEAR:g} m)"
 
 
 def _reason(row: RunRow, contact: PersonContact | None) -> str:

@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from .recorded_people import RecordedPeople
     from .robot import Mount, Planner, RobotGoal, RobotSpec
     from .robots.joint_target import JointTarget, joint_positions
-    from .robots.passage import blind_remarks, passage_remarks
+    from .robots.passage import blind_remarks, narrow_passage, passage_remarks
     from .robots.predictor import RobotPredictor
     from .robots.reaction import ReactionSpec, robot_reactions
     from .robots.robot_parts import describe_robot, override_remarks, remarks_at_end, replace_robot, robot_lines
@@ -196,6 +196,7 @@ __all__ = [
     "load_trial",
     "map_files",
     "model_range",
+    "narrow_passage",
     "needs_trust",
     "outline",
     "override_remarks",

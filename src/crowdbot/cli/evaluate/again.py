@@ -32,14 +32,16 @@ def worst_values(cell: CellResult, options: argparse.Namespace) -> dict[str, obj
 
 def worst_lines(result: EvaluationResult, options: argparse.Namespace) -> list[str]:
     """Return the worst seeds of each row, each followed by the command that plays them."""
-    from crowdbot.evaluation import worst_rows
+    from crowdbot.evaluation import not_dangerous, worst_rows
 
     lines = []
     for cell in result.cells:
         rows = worst_rows(cell, COUNT)
         if rows:
             where = ", ".join(filter(None, (cell.trial, cell.method, cell.robot)))
-            lines.append(f"worst runs of {where}: " + "; ".join(f"seed {row.seed} ({reason})" for row, reason in rows))
+            runs = "; ".join(f"seed {row.seed} ({reason})" for row, reason in rows)
+            calm = not_dangerous(cell)
+            lines.append(f"{where}: {calm}; closest run: {runs}" if calm else f"worst runs of {where}: {runs}")
             lines.append(f"  {_command(cell, [row.seed for row, _ in rows], options)}")
     return lines
 

@@ -35,11 +35,7 @@ def print_answers(result: EvaluationResult, requirements: Sequence[Requirement])
     for cell, verdict in zip(result.cells, verdicts, strict=True):
         print(textwrap.fill(verdict.sentence, WIDTH))
         for contact in person_contacts(cell)[:1]:
-            where = f"at the {contact.region}" if contact.region else "at an unknown body region"
-            print(
-                f"  hardest contact: seed {contact.seed}, {where}, {contact.speed:.2f} m/s,"
-                f" severity {contact.severity} (force over the limit of ISO/TS 15066)"
-            )
+            print(textwrap.fill(f"hardest contact: {contact.sentence}", WIDTH, initial_indent="  "))
     for remark in remark_lines(result.cells):
         print(textwrap.fill(remark, WIDTH))
     notices: dict[str, dict[str, None]] = {}

@@ -32,13 +32,9 @@ def passage_remarks(trial: Trial) -> tuple[str, ...]:
     >>> passage_remarks(load_trial("doorway", {"robot/type": "wheelchair"}))
     ()
     """
-    robots = [robot for robot in trial.robots if robot.type and not robot.ghost and robot.mirror is None]
-    if trial.world != "planar" or not robots:
-        return ()
-    walls = trial.stage.as_walls()
     found = []
-    for robot in robots:
-        width = _narrowest(trial, walls, robot)
+    for robot in trial.robots:
+        width = narrow_passage(trial, robot)
         if width is None:
             continue
         name = "the robot" if len(trial.robots) == 1 else f"robot {robot.name!r}"
@@ -71,8 +67,11 @@ def blind_remarks(trial: Trial) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _narrowest(trial: Trial, walls: Walls, robot: RobotSpec) -> float | None:
-    """Return the width [m] of a passage that is too narrow for a robot, or None."""
+def narrow_passage(trial: Trial, robot: RobotSpec) -> float | None:
+    """Return the width [m] of the narrowest passage on the way of a robot that is too narrow for it, or None."""
+    if trial.world != "planar" or not robot.type or robot.ghost or robot.mirror is not None:
+        return None
+    walls = trial.stage.as_walls()
     fits, fails = SMALLEST, robot.body.half_width
     if fits >= fails or _has_path(walls, robot, fails) or not _has_path(walls, robot, fits):
         return None
