@@ -1,11 +1,17 @@
-"""Robot software that is scored gets readings that do not say who was met; the same port with the truth does."""
+"""What robot software that is scored may see: one rule for all topics; no reading says who was met."""
 
 from __future__ import annotations
+
+import dataclasses
 
 import numpy as np
 import pytest
 from bridge_runs import MemoryTransport
+from test_interface_page import load_tool
 
+from crowdbot.bridges import Inbox, RobotInterface
+from crowdbot.bridges.foxglove.session import FoxgloveGraph
+from crowdbot.bridges.rosbridge.graph import RosGraph
 from crowdbot.bridges.stack_link import StackPort
 from crowdbot.messages import Messages, Ros1Messages
 from crowdbot.messages.point_clouds import points_in
@@ -22,9 +28,9 @@ TRIAL = """<trial name="met" duration="2" world="planar"><stage/><crowd type="or
 <sensor name="touch" type="bumper" rate="20"/></robot></trial>"""
 
 
-def sent(truth):
+def sent(truth, trial=None):
     """Return the messages of a run of 5 steps by topic, the latest of each."""
-    simulation = Simulation(parse_trial(TRIAL), 0)
+    simulation = Simulation(trial or parse_trial(TRIAL), 0)
     memory = MemoryTransport()
     port = StackPort(simulation.trial, [memory], ["robot"], truth)
     port.start()
@@ -76,3 +82,63 @@ def test_a_hidden_scan_can_be_encoded_for_both_generations_of_ros():
         kind, data = messages[topic].__msgtype__, Messages().encode_message(messages[topic])
         assert Messages().decode_message(data, kind).header.frame_id == topic[1:]
         assert Ros1Messages().message(Ros1Messages().of_cdr(data, kind), kind).header.frame_id == topic[1:]
+
+
+MEASURED = {"", "/image", "/camera_info"}
+"""Ends of the topics of a sensor that a real robot has, too."""
+
+
+@pytest.fixture(scope="module")
+def everything():
+    """A trial with every kind of sensor, a robot without odometry beside it, and people."""
+    trial = load_tool().example_trial()
+    (robot,) = trial.robots
+    other = dataclasses.replace(robot, name="other", x=robot.x + 3.0, sensors=())
+    return dataclasses.replace(trial, robots=(robot, other))
+
+
+def test_without_the_truth_only_what_a_real_robot_has_is_offered_and_sent(everything):
+    robot = everything.robots[0]
+    allowed = {"/clock", "/tf", "/tf_static", "/map", "/robot/goal", "/robot/robot_description", "/robot/joint_states"}
+    assert any(mount.sensor.encoders for mount in robot.sensors)
+    allowed |= {"/robot/odom"}
+    hidden = [mount.name for mount in robot.sensors if type(mount.sensor).__name__ == "GroundTruthPeople"]
+    assert hidden
+    allowed |= {f"/robot/{one.name}{end}" for one in robot.sensors if one.name not in hidden for end in MEASURED}
+    port = StackPort(everything, [], ["robot"])
+    offered = {one.name for one in port.interface.outputs}
+    assert offered <= allowed
+    messages = sent(False, everything)
+    assert {*messages} <= offered
+    assert {f"/robot/{one.name}" for one in robot.sensors if one.name == "scan"} <= {*messages}
+    rows = messages["/tf"].transforms
+    assert {row.child_frame_id.partition("/")[0] for row in rows} == {"robot"}
+    inbox = Inbox(port.interface)
+    rosbridge, foxglove = RosGraph(port.interface, inbox, print), FoxgloveGraph(port.interface, inbox, print)
+    inputs = {one.name for one in port.interface.inputs}
+    assert {*rosbridge.topics} - inputs == {*foxglove.channels} == offered
+
+
+def test_with_the_truth_everything_of_its_robots_and_the_scene_is_offered(everything):
+    offered = {one.name for one in StackPort(everything, [], ["robot"], truth=True).interface.outputs}
+    whole = [one for one in RobotInterface.of(everything).outputs if one.robot in ("", "robot")]
+    assert offered == {one.name for one in whole} | {"/robot/goal"}
+    assert {one.child_frame_id for one in sent(True, everything)["/tf"].transforms} >= {"other/base_link"}
+
+
+def test_odometry_without_a_sensor_of_it_is_the_truth():
+    trial = parse_trial(TRIAL)
+    assert "/robot/odom" not in sent(False, trial)
+    assert "/robot/odom" in sent(True, trial)
+
+
+def test_no_message_changes_with_the_numbers_of_the_people():
+    people = [f'<agent x="{x}" y="{y}" goal="{3 * x},{3 * y}"/>' for x, y in ((0.65, 0.0), (0.0, 0.9), (-0.8, 0.3))]
+    one = '<agent x="0.65" y="0" goal="3,0"/>'
+    flat = TRIAL.replace('<sensor name="cloud" type="lidar3d" columns="60" elevations="-0.08 0.08" rate="20"/>', "")
+    assert flat != TRIAL  # in space, the shape of a person follows from the number
+    runs = [sent(False, parse_trial(flat.replace(one, "".join(order)))) for order in (people, people[::-1])]
+    assert runs[0].keys() == runs[1].keys()
+    for topic in runs[0]:
+        first, second = (Messages().encode_message(run[topic]) for run in runs)
+        assert first == second, topic

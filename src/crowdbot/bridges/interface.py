@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -330,6 +331,10 @@ def interface_store() -> Any:
 
 OPTICAL = ("/image", "/labels", "/camera_info")
 """Topics of a camera that are in its optical frame."""
+SHARED = ("/clock", "/tf", "/tf_static", "/map")
+"""Topics of the scene that a real robot has, too; the localisation in ``/tf`` is perfect."""
+EXACT = ("/reading", "/labels")
+"""Topics of a sensor that say more than its readings: who was met, without noise."""
 
 
 @dataclass(frozen=True)
@@ -344,6 +349,7 @@ class OutputTopic:
         quality: quality of service.
         robot: name of the robot, empty for the scene.
         about: one line for people.
+        truth: whether it says what no real robot can measure; robot software that is scored does not get it.
     """
 
     name: str
@@ -353,6 +359,7 @@ class OutputTopic:
     quality: QualityOfService
     robot: str = ""
     about: str = ""
+    truth: bool = False
 
 
 @dataclass(frozen=True)
@@ -456,30 +463,57 @@ class RobotInterface:
 def _scene_outputs(trial: Trial, follows_clock: bool) -> list[OutputTopic]:
     every, period = 1.0 / trial.step, 1.0 / trial.recording.period
     clock = OutputTopic("/clock", "rosgraph_msgs/msg/Clock", "", every, CLOCK, about="simulated time")
-    return [
+    rows = [
         *([] if follows_clock else [clock]),
         OutputTopic("/tf", "tf2_msgs/msg/TFMessage", "", every, TF, about="frames that move (REP-105)"),
         OutputTopic("/tf_static", "tf2_msgs/msg/TFMessage", "", 0.0, LATCHED, about="fixed frames"),
         OutputTopic("/map", "nav_msgs/msg/OccupancyGrid", MAP, 0.0, LATCHED, about="walls and obstacles"),
         OutputTopic("/people", "people_msgs/msg/People", MAP, period, STATE, about="true people"),
-        OutputTopic("/crowd/markers", MARKERS, MAP, 1.0 / trial.recording.markers, STATE, about="shapes for viewers"),
-        OutputTopic("/crowdbot/contacts", "crowdbot_msgs/msg/Contacts", MAP, 0.0, STATE, about="contacts of robots"),
-        OutputTopic(FORCES, "crowdbot_msgs/msg/Forces", MAP, 0.0, STATE, about="contact forces (physics world)"),
-        OutputTopic(FALLS, "crowdbot_msgs/msg/Falls", MAP, 0.0, STATE, about="falls of people that are over"),
-        OutputTopic(FALL_POSES, "crowdbot_msgs/msg/FallPoses", MAP, 0.0, STATE, about="poses of people out of balance"),
-        OutputTopic(COLLISIONS, "crowdbot_msgs/msg/Collisions", MAP, 0.0, STATE, about="contacts that have ended"),
-        OutputTopic("/crowdbot/orders", "std_msgs/msg/String", "", 0.0, STATE, about="orders that were applied"),
-        OutputTopic("/crowdbot/reactions", "std_msgs/msg/String", "", 0.0, STATE, about="reactions to robots"),
+        OutputTopic(
+            "/crowd/markers", MARKERS, MAP, 1.0 / trial.recording.markers, STATE, about="shapes for viewers", truth=True
+        ),
+        OutputTopic(
+            "/crowdbot/contacts", "crowdbot_msgs/msg/Contacts", MAP, 0.0, STATE, about="contacts of robots", truth=True
+        ),
+        OutputTopic(
+            FORCES, "crowdbot_msgs/msg/Forces", MAP, 0.0, STATE, about="contact forces (physics world)", truth=True
+        ),
+        OutputTopic(
+            FALLS, "crowdbot_msgs/msg/Falls", MAP, 0.0, STATE, about="falls of people that are over", truth=True
+        ),
+        OutputTopic(
+            FALL_POSES,
+            "crowdbot_msgs/msg/FallPoses",
+            MAP,
+            0.0,
+            STATE,
+            about="poses of people out of balance",
+            truth=True,
+        ),
+        OutputTopic(
+            COLLISIONS, "crowdbot_msgs/msg/Collisions", MAP, 0.0, STATE, about="contacts that have ended", truth=True
+        ),
+        OutputTopic(
+            "/crowdbot/orders", "std_msgs/msg/String", "", 0.0, STATE, about="orders that were applied", truth=True
+        ),
+        OutputTopic(
+            "/crowdbot/reactions", "std_msgs/msg/String", "", 0.0, STATE, about="reactions to robots", truth=True
+        ),
     ]
+    return [dataclasses.replace(one, truth=one.name not in SHARED) for one in rows]
 
 
 def _robot_outputs(robot: RobotSpec, every: float) -> list[OutputTopic]:
     name, frames = robot.name, LinkFrames(robot)
     sensors = {mount.name for mount in robot.sensors}
     odometry = "nav_msgs/msg/Odometry"
-    rows = [OutputTopic(f"/{name}/ground_truth/odom", odometry, MAP, every, STATE, name, "true pose and velocity")]
+    rows = [
+        OutputTopic(f"/{name}/ground_truth/odom", odometry, MAP, every, STATE, name, "true pose and velocity", True)
+    ]
     if "odom" not in sensors:
-        rows.append(OutputTopic(f"/{name}/odom", odometry, frames.odom, every, STATE, name, "odometry"))
+        measured = any(mount.sensor.encoders for mount in robot.sensors)
+        about = "odometry" if measured else "true odometry, without a sensor of it"
+        rows.append(OutputTopic(f"/{name}/odom", odometry, frames.odom, every, STATE, name, about, not measured))
     if "joint_states" not in sensors and robot.body.model.movable:
         rows.append(
             OutputTopic(f"/{name}/joint_states", "sensor_msgs/msg/JointState", "", every, STATE, name, "joints")
@@ -493,7 +527,8 @@ def _robot_outputs(robot: RobotSpec, every: float) -> list[OutputTopic]:
             frame = f"{topic}_optical" if ending in OPTICAL else topic
             frame = frames.odom if kind == odometry else frame
             about = type(mount.sensor).__name__
-            rows.append(OutputTopic(f"/{topic}{ending}", kind, frame, rate, SENSOR, name, about))
+            truth = mount.sensor.truth or ending in EXACT
+            rows.append(OutputTopic(f"/{topic}{ending}", kind, frame, rate, SENSOR, name, about, truth))
     return rows
 
 

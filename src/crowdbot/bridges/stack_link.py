@@ -30,10 +30,6 @@ from crowdbot.recording import StepMessage
 from crowdbot.simulation import Order, RobotControl, Simulation, VelocityOrder
 from crowdbot.trials import Trial
 
-SHARED = ("/clock", "/tf", "/tf_static", "/map")
-"""Topics of the scene that every robot software gets."""
-TRUE = ("/ground_truth/odom", "/reading", "/labels")
-"""Ends of the topics of a robot that hold the truth."""
 DRIVEN = ("cmd_vel", "joint_command", "joint_trajectory")
 """Inputs of a robot that its software may use."""
 
@@ -48,8 +44,9 @@ def _goal_topic(robot: str) -> OutputTopic:
 class StackPort(BridgePort):
     """A port for the software of some robots of a trial.
 
-    It offers the topics of these robots and of the scene that a real robot has, too, and the goals. It takes velocities
-    and joint targets only: no goals, no other orders, no services.
+    It offers the topics of these robots and of the scene that a real robot has, too
+    (:attr:`~crowdbot.bridges.OutputTopic.truth`), and the goals. It takes velocities and joint targets only: no goals,
+    no other orders, no services.
 
     Args:
         trial: the trial.
@@ -101,9 +98,19 @@ class StackPort(BridgePort):
                 yield StepMessage(f"/{name}/goal", GOAL, now, make, pose)
 
     def _offers(self, one: OutputTopic) -> bool:
-        if not one.robot:
-            return self.truth or one.name in SHARED
-        return one.robot in self.robots and (self.truth or not one.name.endswith(TRUE))
+        """Return whether the software may see a topic: the one rule, for all transports."""
+        return (self.truth or not one.truth) and (not one.robot or one.robot in self.robots)
+
+    def _send(self, messages: list[StepMessage]) -> None:
+        """Send what the software may see; of the transforms those of its robots."""
+        offered = {one.name for one in self.interface.outputs}
+        super()._send([self._own(one) for one in messages if one.topic in offered])
+
+    def _own(self, one: StepMessage) -> StepMessage:
+        if one.topic != "/tf" or self.truth:
+            return one
+        rows = [row for row in one.message.transforms if row.child_frame_id.partition("/")[0] in self.robots]
+        return dataclasses.replace(one, content=type(one.message)(transforms=rows))
 
     def _is_wanted(self, topic: str) -> bool:
         """Return whether the software subscribes a topic that it may have."""

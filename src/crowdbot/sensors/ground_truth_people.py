@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +73,7 @@ class GroundTruthPeople(Sensor):
     field_of_view: float = 2.0 * math.pi
     visible_only: bool = True
     rays: int = 1440
+    truth: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         super().__post_init__()

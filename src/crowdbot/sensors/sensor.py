@@ -110,6 +110,7 @@ class Sensor(ABC):
         spatial: whether the sensor always measures in space, also where people are discs in the plane.
         renders: whether the sensor needs a renderer for its usual images. Rendering is slow and needs graphics.
         encoders: whether the sensor reads the wheels of its robot, ``view.wheels``.
+        truth: whether its readings are the truth, which no sensor of a real robot gives.
 
     >>> @dataclass(frozen=True, kw_only=True)
     ... class Counter(Sensor):
@@ -129,6 +130,7 @@ class Sensor(ABC):
     spatial: ClassVar[bool] = False
     renders: ClassVar[bool] = False
     encoders: ClassVar[bool] = False
+    truth: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_number(type(self).__name__, "rate", self.rate, "Hz", min=1e-6)
