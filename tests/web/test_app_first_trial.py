@@ -7,14 +7,26 @@ import numpy as np
 import pytest
 from simulator_session import Windows, ready, simulator, wait_until
 
+from crowdbot.core import InputError
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
+from crowdbot.web import call_command
 from crowdbot.web.scene import WalkingBodies, scene_description, scene_frame, scene_resource
 from crowdbot.web.simulator import FIRST, LiveRun, live_run
 from crowdbot.web.simulator.beginning_player import BeginningPlayer
 from crowdbot.web.simulator.recorded_beginning import RecordedBeginning, shipped_beginning
 
 AGAIN = "run make fix"
+CALLS = {
+    "save": {},
+    "order": {"order": {"kind": "push", "person": 1, "force": 100.0}},
+    "set_value": {"path": "robot/navigator/type", "text": "orca"},
+    "add_robot": {"type": "pepper", "x": 0.0, "y": 0.0, "goal_x": 1.0, "goal_y": 0.0},
+    "walk": {"avatar": "you", "forward": 1.0},
+    "inspect": {"id": 0},
+    "values": {},
+}
+"""Commands that need a run."""
 
 
 @pytest.fixture(scope="module")
@@ -108,6 +120,30 @@ def test_people_walk_before_the_simulation_is_prepared_and_it_goes_on_there(tmp_
         assert live.time >= shown.time  # nobody is seen to jump back
         assert live.arrays["revision"][0] == description["revision"]
         assert not desk._status()["recorded"]
+
+
+@pytest.mark.live
+def test_nothing_waits_for_a_run_that_is_prepared_and_another_one_opens_meanwhile(tmp_path, monkeypatch):
+    gate, inner = threading.Event(), live_run.open_run
+
+    def late(trial, *args, **options):
+        assert trial.name != FIRST[0] or gate.wait(180.0)
+        return inner(trial, *args, **options)
+
+    monkeypatch.setattr(live_run, "open_run", late)
+    with simulator(tmp_path) as desk:
+        desk.visit({})
+        wait_until(lambda: len(desk.session.frames) > 3)
+        assert desk.people() == []
+        for command, values in CALLS.items():  # none waits for the run, which never comes
+            with pytest.raises(InputError, match="is being prepared; try again as soon as it runs"):
+                call_command(desk, command, values)
+        desk.open("circle-crossing", seed=3, paused=True)
+        assert desk.session.latest("simulator.opened")["source"]["name"] == "circle-crossing"
+        status = ready(desk)
+        assert (status["trial"], status["seed"], status["state"]) == ("circle-crossing", 3, "paused")
+        assert len(desk.people()) > 5
+        gate.set()
 
 
 @pytest.mark.live

@@ -18,7 +18,7 @@ const PING = 2000;
 /** Time [ms] after which a change of the run is in the address. */
 const ADDRESS = 500;
 /** Longest time [ms] that the lists wait for the first picture. */
-const LATER = 700;
+const LATER = 2000;
 
 /** What is shown until a run is prepared. */
 function preparation({ compiling, recorded }) {

@@ -59,6 +59,7 @@ AVATAR = "you"
 """Name of the person that the user moves."""
 WAIT = 8.0
 """Longest time [s] that closing waits for a run, which may be compiling and then ends by itself."""
+PREPARING = "the simulation is being prepared; try again as soon as it runs"
 MOST_IMAGES = 16
 """Largest number of camera images that are sent."""
 Player = LiveRun | Playback
@@ -249,7 +250,7 @@ class SimulatorDesk(Desk):
     @command
     def save(self, name: str | None = None) -> str:
         """Save the recording of the run so far, and return the name of the file."""
-        run = self._live()
+        run = self._prepared()
         target = name or self._free_name(f"{run.trial.name}-seed-{run.seed}")
         if not target.endswith(".mcap"):
             target += ".mcap"
@@ -465,7 +466,7 @@ class SimulatorDesk(Desk):
     @command
     def order(self, order: dict[str, Any]) -> None:
         """Give an order, in the JSON form of an order in an episode file."""
-        self._live().order(read_order(json.dumps({**order, "source": SOURCE})))
+        self._prepared().order(read_order(json.dumps({**order, "source": SOURCE})))
 
     @command
     def inspect(self, id: int) -> dict[str, Any]:
@@ -495,7 +496,7 @@ class SimulatorDesk(Desk):
     @command
     def set_value(self, path: str, text: str) -> None:
         """Change a value of the running trial, as ``--set`` does before a run."""
-        self._live().order(ParameterOrder(path=path, value=text, source=SOURCE))
+        self._prepared().order(ParameterOrder(path=path, value=text, source=SOURCE))
 
     @command
     def add_robot(
@@ -505,7 +506,7 @@ class SimulatorDesk(Desk):
 
         It has the sensors of its type if the people of the trial have limbs for them, otherwise a planar laser scanner.
         """
-        run = self._live()
+        run = self._prepared()
         free: tuple[str, bool] = run.do(lambda: _free_name(run.simulation))
         name, limbs = free
         scan = "" if limbs else '<sensor type="lidar2d"/>'
@@ -519,7 +520,7 @@ class SimulatorDesk(Desk):
     @command
     def take_over(self, robot: str) -> None:
         """Let the user drive a robot: its navigator becomes ``external``."""
-        run = self._live()
+        run = self._live()  # waits for the run, because the stop button of a headset must not fail
         if robot in run.controls:
             return
         spec = run.do(lambda: _robot(run.simulation, robot))
@@ -550,7 +551,7 @@ class SimulatorDesk(Desk):
     @command
     def walk(self, avatar: str, forward: float, left: float = 0.0, turn: float = 0.0) -> None:
         """Hold the velocity of an avatar; to be repeated at least every second."""
-        run = self._live()
+        run = self._prepared()
         control = run.controls.get(avatar)
         if control is None:
             control = run.do(lambda: _held_avatar(run.simulation, avatar))
@@ -562,7 +563,7 @@ class SimulatorDesk(Desk):
     def _asked(self, action: Any) -> Any:
         player = self._any()
         if player.state == "preparing":
-            raise InputError("the simulation is being prepared; values come as soon as it runs")
+            raise InputError(PREPARING)
         return player.do(action)
 
     def _beginning(self) -> BeginningPlayer | None:
@@ -574,6 +575,13 @@ class SimulatorDesk(Desk):
         if self._player is None:
             raise InputError("nothing is open: open a trial or an episode")
         return self._player
+
+    def _prepared(self) -> LiveRun:
+        """Return the run if it can take orders now: the thread of the desk must not wait while it is compiled."""
+        run = self._live()
+        if run.state == "preparing":
+            raise InputError(PREPARING)
+        return run
 
     def _live(self) -> LiveRun:
         player = self._any()
