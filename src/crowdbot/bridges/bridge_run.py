@@ -94,6 +94,7 @@ class BridgeRun:
         self.stop = StopRequest()
         self.pace = Pace(trial.step, clock.rate)
         self.port.inbox.asked_pace.rate = clock.rate if clock.mode == "paced" and not sources else None
+        self.port.inbox.in_step = clock.mode == "commands"
         self.repeat = InstantRepeat()
         self._robots: set[str] = set()
         self._back = -1
@@ -205,6 +206,8 @@ class BridgeRun:
             if self.repeat.must_send(self.port.is_heard):
                 self.port.publish(simulation)
             return IDLE
+        if self._robots <= inbox.stamped:  # they say which instant they answer
+            return 0.0
         return 0.0 if self.repeat.is_settled(inbox.count.velocities) else IDLE
 
     def _note_instant(self, simulation: Simulation, unasked: bool = False) -> None:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
 
-from .interface import InputTopic, RobotInterface
+from .interface import InputTopic, RobotInterface, read_stamp
 from .run_control import CommandLatency
 
 SLOWEST, FASTEST = 0.001, 100.0
@@ -98,6 +98,7 @@ class _Count:
     received: int = 0
     refused: int = 0
     velocities: int = 0
+    stale: int = 0
 
 
 class Inbox:
@@ -122,6 +123,12 @@ class Inbox:
         """Latest time [ns] received on ``/clock``, for a simulation that follows it."""
         self.commanded: set[str] = set()
         """Robots that have received a velocity command since :meth:`take_orders`."""
+        self.in_step = False
+        """Whether each instant waits for its commands. A command with the stamp of an earlier instant is then dropped,
+        and so is a second one with that of the current instant: it answers an instant that was sent twice."""
+        self.stamped: set[str] = set()
+        """Robots whose command has the stamp of the current instant."""
+        self._now, self._taken = 0, -1
         self._velocity: dict[str, VelocityOrder] = {}
         self._orders: deque[Order] = deque()
         self._calls: deque[ServiceCall] = deque()
@@ -142,13 +149,14 @@ class Inbox:
         """
         try:
             orders = self._input(topic).orders(fields, sender)
+            stamp = read_stamp(fields) if any(isinstance(one, VelocityOrder) for one in orders) else 0
         except InputError:
             self.count.refused += 1
             raise
         with self._news:
             self.count.received += 1
             for order in orders:
-                self._add(order)
+                self._add(order, stamp)
             if topic == "/clock":
                 stamp = fields["clock"]
                 self.external_time = int(stamp.get("sec", 0)) * 10**9 + int(stamp.get("nanosec", 0))
@@ -185,6 +193,11 @@ class Inbox:
         with self._news:
             return sum(isinstance(one, kind) and text in getattr(one, "xml", text) for one in self._orders)
 
+    def begin_instant(self, nanoseconds: int) -> None:
+        """Note that the messages of an instant are sent now, at a simulated time [ns]."""
+        with self._news:
+            self._now = nanoseconds
+
     def wait(self, seconds: float) -> None:
         """Wait until something arrives, at most this time."""
         with self._news:
@@ -204,6 +217,8 @@ class Inbox:
             self._orders.clear()
             self._velocity.clear()
             self.commanded.clear()
+            self.stamped.clear()
+            self._taken = self._now
             return found
 
     def take_calls(self) -> list[ServiceCall]:
@@ -226,15 +241,29 @@ class Inbox:
             self._orders.clear()
             self._velocity.clear()
             self.commanded.clear()
+            self.stamped.clear()
+            self._now, self._taken = 0, -1
+
+    def _is_stale(self, robot: str, stamp: int) -> bool:
+        """Return whether a command answers another instant, or one that has its command."""
+        if not self.in_step or not 0 < stamp <= self._now:  # no stamp, or that of another clock
+            return False
+        if stamp < self._now or self._taken == self._now or robot in self.stamped:
+            return True
+        self.stamped.add(robot)
+        return False
 
     def _note(self) -> None:
         self._arrivals += 1
         self._news.notify_all()
 
-    def _add(self, order: Order) -> None:
+    def _add(self, order: Order, stamp: int = 0) -> None:
         if isinstance(order, VelocityOrder):
-            self._velocity[order.robot] = order
             self.count.velocities += 1
+            if self._is_stale(order.robot, stamp):
+                self.count.stale += 1
+                return
+            self._velocity[order.robot] = order
             self.latency.note_command(order.robot)
             self.commanded.add(order.robot)
             return

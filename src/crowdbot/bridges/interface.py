@@ -109,6 +109,20 @@ def read_twist(fields: Fields, robot: str, sender: str) -> list[Order]:
     ]
 
 
+def read_stamp(fields: Fields) -> int:
+    """Return the time [ns] in the header of a ``geometry_msgs/TwistStamped``, 0 without one.
+
+    >>> read_stamp({"header": {"stamp": {"sec": 1, "nanosec": 50}}, "twist": {}}), read_stamp({"linear": {}})
+    (1000000050, 0)
+    """
+    head = ("header", "stamp")
+    if "twist" not in fields:
+        return 0
+    names = (("sec", "secs"), ("nanosec", "nsecs"))  # ROS 2, ROS 1
+    seconds, nanoseconds = (sum(read_number(fields, *head, name) for name in pair) for pair in names)
+    return int(seconds) * 10**9 + int(nanoseconds)
+
+
 def read_goal(fields: Fields, robot: str, sender: str) -> list[Order]:
     """Return the goal of ``geometry_msgs/PoseStamped``, in the frame of the map."""
     if not isinstance(fields.get("pose"), Mapping):

@@ -187,6 +187,7 @@ class BridgePort:
             return topic in ("/tf_static",) or topic.endswith("/robot_description") or self._is_wanted(topic)
 
         messages = list(self._steps.messages(frame, wants))
+        self.inbox.begin_instant(frame.nanoseconds)
         self.inbox.latency.note_step()
         self._send(messages)
 

@@ -275,6 +275,7 @@ class StackLink:
         self._program: StackProgram | None = None
         self._transport, places, environment = self._open_transport()
         self._port = StackPort(simulation.trial, [self._transport], robots, navigator.truth)
+        self._port.inbox.in_step = True
         self._begun = self._closed = False
         self._held = ""
         try:
@@ -390,7 +391,8 @@ class StackLink:
             raise InputError(self._failure("has disconnected"))
 
     def _failure(self, what: str) -> str:
-        program = self._program
+        program, stale = self._program, self._port.inbox.count.stale
+        what += f"; {stale} commands had stamps of earlier instants" if stale else ""
         return f"{self.navigator.title()}: its program {what} {program.ending if program else ''}".strip()
 
     def close(self) -> None:
