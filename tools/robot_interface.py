@@ -69,9 +69,9 @@ No clock changes the result: the same orders at the same instants give the same 
 
 With `commands`, programs answer each instant with one velocity command for each robot, however long they compute. The
 instant is sent to new subscribers, and again if nobody answers, since DDS can lose the first messages. All answers to a
-repeated instant are awaited, so that none of them counts for the next one. A `geometry_msgs/TwistStamped` with the time of
-`/clock` in its header says which instant it answers: copies and late answers are then dropped, whenever they come. The
-instant 0 is the time 0, which means no stamp.
+repeated instant are awaited, so that none of them counts for the next one. A `geometry_msgs/TwistStamped` with the time
+of `/clock` in its header says which instant it answers: copies and late answers are then dropped, whenever they come.
+The instant 0 is the time 0, which means no stamp.
 """
 
 

@@ -1,0 +1,71 @@
+"""The age of what a client reads that takes one message in 0.5 s."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+
+import aiohttp
+import pytest
+from bridge_runs import MemoryTransport, Running, endless_trial
+
+from crowdbot.bridges.foxglove import FoxgloveServer
+from crowdbot.bridges.rosbridge.server import RosbridgeServer
+
+pytestmark = pytest.mark.live
+PERIOD, OLDEST = 0.5, 600_000_000
+"""Time between two readings [s], and largest age [ns]."""
+
+
+async def rosbridge(socket):
+    """Subscribe the scans; return a function for the time [ns] of a message."""
+    await socket.send_json({"op": "subscribe", "topic": "/robot/scan"})
+
+    def stamp(data):
+        found = json.loads(data)["msg"]["header"]["stamp"]
+        return found["sec"] * 10**9 + found["nanosec"]
+
+    return stamp
+
+
+async def foxglove(socket):
+    """As :func:`rosbridge`."""
+    channels = []
+    while not channels:
+        message = await socket.receive()
+        if message.type == aiohttp.WSMsgType.TEXT:
+            channels = [one for one in message.json().get("channels", ()) if one["topic"] == "/robot/scan"]
+    rows = [{"id": 1, "channelId": channels[0]["id"]}]
+    await socket.send_json({"op": "subscribe", "subscriptions": rows})
+    return lambda data: struct.unpack_from("<Q", data, 5)[0] if isinstance(data, bytes) and data[0] == 1 else None
+
+
+async def ages(port, subscribe, protocols, now):
+    """Return the simulated ages [ns] of 16 scans that are read one in 0.5 s, after those of the first second."""
+    found = []
+    async with aiohttp.ClientSession() as http:
+        address = f"ws://127.0.0.1:{port}/"
+        async with http.ws_connect(address, protocols=protocols, max_msg_size=0) as socket:
+            stamp = await subscribe(socket)
+            while len(found) < 18:
+                time = stamp((await socket.receive()).data)
+                if time is not None:
+                    found.append(now() - time)
+                    await asyncio.sleep(PERIOD)
+    return found[2:]
+
+
+@pytest.mark.parametrize(
+    ("kind", "subscribe", "protocols"),
+    [(RosbridgeServer, rosbridge, ()), (FoxgloveServer, foxglove, ("foxglove.sdk.v1",))],
+)
+def test_a_reader_of_two_scans_a_second_gets_the_newest(kind, subscribe, protocols):
+    server, clock = kind(port=0), MemoryTransport(topics=("/clock",))
+    with Running(endless_trial(600.0), [server, clock]):
+
+        def now():
+            return max(one.nanoseconds for one in clock.sent[-20:])
+
+        found = asyncio.run(ages(server.port, subscribe, protocols, now))
+    assert max(found) < OLDEST, found
