@@ -262,6 +262,18 @@ def test_the_page_and_the_shipped_numbers_are_the_same(tmp_path: Path) -> None:
     assert (tmp_path / "table.json").read_bytes() == around_robots.CLEARANCES.read_bytes()
 
 
+def test_the_page_has_every_change_that_was_tried_for_the_cart_from_behind() -> None:
+    import around_robots
+
+    page = (ROOT / "docs" / "results" / "around-robots.md").read_text(encoding="utf-8")
+    part = page.split("### What was tried for the cart from behind")[1].split("\n## ")[0]
+    shown = [line.split(" | ")[0].removeprefix("| ") for line in part.splitlines() if line.startswith("| ")]
+    names = [
+        ", ".join(f"{key.replace('_', '-')} {value:g}" for key, value in way.items()) for way in around_robots.BACK_WAYS
+    ]
+    assert shown == ["change", "recorded people", "none", *names[1:]]
+
+
 def test_other_values_of_a_preset_find_no_row() -> None:
     from crowdbot.models import People
 
