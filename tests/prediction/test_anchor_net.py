@@ -78,16 +78,16 @@ def test_arranged_futures_collide_less_and_everyone_keeps_all(seed: int) -> None
 def test_who_comes_too_near_gives_way_evenly() -> None:
     step = np.arange(1.0, 13.0)[:, None]
     path = np.stack([np.array([0.5, 0.0]) * step, np.array([6.0, 0.1]) - np.array([0.5, 0.0]) * step])
-    moved = separate_paths(path, np.zeros(2, dtype=bool), np.full(2, 0.15), 12)
+    moved = separate_paths(path, np.ones(2, dtype=np.int64), np.full(2, 0.15), 12)
     assert np.linalg.norm(moved[0] - moved[1], axis=1).min() >= 0.3
     np.testing.assert_allclose(moved[0] - path[0], path[1] - moved[1], atol=1e-12)
-    held = separate_paths(path, np.array([True, False]), np.full(2, 0.15), 12)
+    held = separate_paths(path, np.array([0, 1]), np.full(2, 0.15), 12)
     assert np.array_equal(held[0], path[0])
     assert np.linalg.norm(held[0] - held[1], axis=1).min() >= 0.3
     head_on = path * np.array([1.0, 0.0])
     assert (
         np.linalg.norm(
-            np.subtract(*separate_paths(head_on, np.zeros(2, dtype=bool), np.full(2, 0.15), 12)), axis=1
+            np.subtract(*separate_paths(head_on, np.ones(2, dtype=np.int64), np.full(2, 0.15), 12)), axis=1
         ).min()
         >= 0.3
     )

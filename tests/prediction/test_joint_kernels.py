@@ -22,7 +22,7 @@ from crowdbot.prediction.joint_kernels import assign_futures, first_crossing, se
 Maker = Callable[..., Windows]
 LIMIT = 0.4
 seeds = st.integers(0, 10_000)
-NOBODY = np.zeros(2, dtype=bool)
+PEOPLE = np.ones(2, dtype=np.int64)
 
 
 def rooms(path: np.ndarray) -> np.ndarray:
@@ -66,7 +66,7 @@ def test_two_people_are_moved_apart_along_their_closest_line(seed: int, first: b
     distance = np.linalg.norm(away, axis=1)
     at = int(np.argmin(distance))
     when = fine[at]
-    moved = separate_paths(path, fixed, rooms(path), 1)
+    moved = separate_paths(path, np.where(fixed, 0, 1), rooms(path), 1)
     expected = path.copy()
     if distance[at] < LIMIT and not fixed.all():
         missing = (1.02 * LIMIT - distance[at]) * away[at] / distance[at]
@@ -85,9 +85,9 @@ def test_separation_does_not_depend_on_the_order_of_people(seed: int) -> None:
     rng = stream(seed, "many")
     path = rng.normal(0.0, 0.5, (4, 1, 2)) + np.cumsum(rng.normal(0.0, 0.1, (4, 5, 2)), axis=1)
     fixed, order = rng.random(4) < 0.3, rng.permutation(4)
-    moved = separate_paths(path, fixed, rooms(path), 3)
+    moved = separate_paths(path, np.where(fixed, 0, 1), rooms(path), 3)
     np.testing.assert_allclose(
-        separate_paths(path[order], fixed[order], rooms(path[order]), 3), moved[order], atol=1e-9
+        separate_paths(path[order], np.where(fixed, 0, 1)[order], rooms(path[order]), 3), moved[order], atol=1e-9
     )
     np.testing.assert_array_equal(moved[fixed], path[fixed])
 
@@ -95,12 +95,12 @@ def test_separation_does_not_depend_on_the_order_of_people(seed: int) -> None:
 def test_people_at_one_place_are_moved_across_their_way() -> None:
     step = np.arange(1.0, 5.0)[:, None]
     same = np.stack([step * [0.5, 0.0]] * 2)
-    moved = separate_paths(same, NOBODY, rooms(same), 1)
+    moved = separate_paths(same, PEOPLE, rooms(same), 1)
     assert np.all(moved[..., 0] == same[..., 0])
     np.testing.assert_allclose(np.abs(moved[:, :, 1]), 0.51 * LIMIT)
     assert np.all(moved[0, :, 1] == -moved[1, :, 1])
     far = np.stack([step * [0.5, 0.0], step * [0.5, 0.0] + [0.0, LIMIT]])
-    np.testing.assert_array_equal(separate_paths(far, NOBODY, rooms(far), 12), far)
+    np.testing.assert_array_equal(separate_paths(far, PEOPLE, rooms(far), 12), far)
 
 
 def collisions(path: np.ndarray, choice: np.ndarray) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
@@ -44,7 +45,7 @@ def test_paths_are_apart_by_the_sum_of_radii_between_rows_too(limit: float) -> N
         speed = rng.normal(0.0, 0.5, (2, 1, 2)) + rng.normal(0.0, 0.05, (2, 12, 2))
         start = np.array([[[-1.5, 0.0]], [[1.5, 0.0]]])
         path = start + np.cumsum(speed - 0.15 * np.sign(start), axis=1)
-        assert gap(*separate_paths(path, np.zeros(2, dtype=bool), np.full(2, 0.5 * limit), 12)) > 0.98 * limit
+        assert gap(*separate_paths(path, np.ones(2, dtype=np.int64), np.full(2, 0.5 * limit), 12)) > 0.98 * limit
 
 
 def test_futures_of_one_draw_collide_less_than_those_of_single_people(
@@ -58,3 +59,36 @@ def test_futures_of_one_draw_collide_less_than_those_of_single_people(
     }
     assert found[0.4][0] < 0.3 * found[0.25][0] < 0.3 * found[0.0][0]
     assert found[0.0][1] == found[0.4][1]
+
+
+@pytest.mark.parametrize("samples", [1, 20])
+def test_a_robot_without_a_plan_gives_way_and_one_with_a_plan_does_not(samples: int, windows: Maker) -> None:
+    time = 0.4 * np.arange(-7.0, 1.0)
+    sway = 0.01 * np.sin(1.7 * np.arange(8.0))
+    tracks = np.stack([np.stack([1.2 * time - 3.0, sway], 1), np.stack([3.0 - 1.2 * time, 0.05 + 0.0 * sway], 1)], 1)
+    past = windows(tracks[None], robot=[[False, True]])
+    alone = AnchorNet("open", contact=0.0).predict(past, 12, samples).position
+    free = AnchorNet("open").predict(past, 12, samples).position
+    if samples == 1:
+        np.testing.assert_array_equal(free[..., 0, :], alone[..., 0, :])
+        assert np.abs(free - alone).max() > 0.1
+    assert min(gap(one[:, 0], one[:, 1]) for one in free[0]) > 0.24
+    ahead = np.stack([np.full((12, 2), np.nan), [3.0, 0.05] - np.arange(1.0, 13.0)[:, None] * [0.48, 0.0]], 1)[None]
+    planned = AnchorNet("open", reaction="none").predict(dataclasses.replace(past, plan=ahead), 12, samples).position
+    np.testing.assert_array_equal(planned[0, :, :, 1], np.repeat(ahead[:, :, 1], len(planned[0]), axis=0))
+    assert min(gap(one[:, 0], one[:, 1]) for one in planned[0]) > 0.24
+
+
+@pytest.mark.parametrize(("speed", "noise", "steady"), [(0.0, 0.0, True), (1.2, 0.0, True), (1.2, 0.01, False)])
+def test_people_with_equal_displacements_are_predicted_with_constant_velocity(
+    speed: float, noise: float, steady: bool, windows: Maker
+) -> None:
+    bend = np.array([[-3.0, 0.3], [-2.3, 0.2], [-1.6, 0.1], [-1.0, 0.0]])
+    late = np.stack([speed * 0.4 * np.arange(4.0), np.zeros(4)], 1)
+    track = np.concatenate([bend, late]) + noise * stream(0, "steady").standard_normal((8, 2))
+    past = windows(track[None, :, None])
+    answer, line = AnchorNet("open").predict(past, 12).position, ConstantVelocity().predict(past, 12).position
+    assert np.allclose(answer, line, atol=1e-9) == steady
+    hidden = dataclasses.replace(past, present=past.present & (np.arange(8) != 6)[None, :, None])
+    unseen = AnchorNet("open").predict(hidden, 12).position
+    assert not np.allclose(unseen, ConstantVelocity().predict(hidden, 12).position, atol=1e-9)

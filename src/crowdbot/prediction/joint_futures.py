@@ -65,7 +65,9 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
     """Return joint futures ``[W, K, T, A, 2]`` [m] with people at least ``contact`` [m] apart, also between rows.
 
     Where the windows have radii, people are apart by the sum of radii; half of ``contact`` is the radius of the others.
-    Paths that cross a wall stop there; those that would cross one after the separation are not moved.
+    Robots with a plan are not moved. Robots without one give way: nothing says where they will drive, and people are
+    not predicted to avoid it. Paths that cross a wall stop there; those that would cross one after the separation are
+    not moved.
     """
     if contact <= 0.0:
         return place
@@ -74,9 +76,9 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
     for window, who in _members(past):
         if len(who) < 2:
             continue
-        fixed, room = past.robot[window, who], _rooms(past, window, who, contact)
+        rank, room = _ranks(past, window, who), _rooms(past, window, who, contact)
         paths = _with_plans(past, place[window][:, :, who].transpose(0, 2, 1, 3), window, who)
-        moved = np.stack([separate_paths(path, fixed, room, ROUNDS) for path in np.ascontiguousarray(paths)])
+        moved = np.stack([separate_paths(path, rank, room, ROUNDS) for path in np.ascontiguousarray(paths)])
         found[window][:, :, who] = moved.transpose(0, 2, 1, 3)
     _, hit = _stop_at_walls(past, found)
     return np.where(hit[:, :, None, :, None], place, found)
@@ -110,6 +112,13 @@ def stop_at_walls(
     last = np.take_along_axis(path, np.maximum(free - 1, 0)[:, :, None, None], axis=2)
     last = np.where((free > 0)[:, :, None, None], last, 0.0)
     return np.where((np.arange(T) < free[..., None])[..., None], path, last), free < T
+
+
+def _ranks(past: Windows, window: int, who: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return who gives way to whom ``[A]``: 0 for robots with a plan, 1 for people, 2 for robots without one."""
+    robot = past.robot[window, who]
+    planned = np.zeros(len(who), dtype=np.bool_) if past.plan is None else ~np.isnan(past.plan_at(1)[window, who, 0])
+    return np.where(robot, np.where(planned, 0, 2), 1)
 
 
 def _rooms(past: Windows, window: int, who: NDArray[np.int64], contact: float) -> Floats:

@@ -188,13 +188,14 @@ def _closest(
 
 
 @kernel
-def separate_paths(path: Floats, fixed: Bools, room: Floats, rounds: int) -> Floats:  # pragma: no cover - compiled
+def separate_paths(path: Floats, rank: Ints, room: Floats, rounds: int) -> Floats:  # pragma: no cover - compiled
     """Return the paths ``[A, T, 2]`` [m] of one joint future with a minimum distance between people.
 
     Two people closer than the sum of ``room [A]`` [m] of both, at a step or between two, are moved in opposite
     directions where they are closest, by half of the missing distance each. The offset grows linearly up to there and
     stays constant afterwards.
-    Agents in ``fixed`` are not moved. All pairs move simultaneously in each round; the result does not depend on the
+    Of two agents with different ``rank [A]`` only the one with the higher rank is moved; those of rank 0 never are. All
+    pairs move simultaneously in each round; the result does not depend on the
     order of people. Two people whom the round before did not move are not looked at again.
     """
     A, T, _ = path.shape
@@ -206,27 +207,27 @@ def separate_paths(path: Floats, fixed: Bools, room: Floats, rounds: int) -> Flo
         found = False
         for a in range(A):
             for b in range(a + 1, A):
-                if (fixed[a] and fixed[b]) or not (before[a] or before[b]):
+                if (rank[a] == 0 and rank[b] == 0) or not (before[a] or before[b]):
                     continue
                 limit = room[a] + room[b]
                 when, least, dx, dy = _closest(out[a], out[b], limit, longest[a] + longest[b])
                 if when < 0.0:
                     continue
                 found = True
-                moved[a], moved[b] = moved[a] or not fixed[a], moved[b] or not fixed[b]
+                moved[a], moved[b] = moved[a] or rank[a] >= rank[b], moved[b] or rank[b] >= rank[a]
                 away = math.sqrt(least)
                 if away < FLAT:  # same position: move across the direction of motion
                     dy, dx = out[a, T - 1, 0] - out[a, 0, 0], out[a, 0, 1] - out[a, T - 1, 1]
                     away = max(math.sqrt(dx * dx + dy * dy), FLAT)
                     least = 0.0
-                part = 1.0 if fixed[a] or fixed[b] else 0.5
+                part = 0.5 if rank[a] == rank[b] else 1.0
                 size = part * (1.02 * limit - math.sqrt(least)) / away
                 for t in range(T):
                     grown = size * min(1.0, (t + 1.0) / (when + 1.0))
-                    if not fixed[a]:
+                    if rank[a] >= rank[b]:
                         push[a, t, 0] += grown * dx
                         push[a, t, 1] += grown * dy
-                    if not fixed[b]:
+                    if rank[b] >= rank[a]:
                         push[b, t, 0] -= grown * dx
                         push[b, t, 1] -= grown * dy
         if not found:

@@ -20,6 +20,8 @@ FEWEST_EVEN = 3
 """Number of moving people in a window for which the share of even tracks counts."""
 FAST = (1.6, 2.4)
 """Mean displacement in 0.4 s [m] from which, and above which, a person is foreign: 4 and 6 m/s."""
+EQUAL = (0.0001, 0.0003)
+"""Difference of the last displacements [m] below which a person is steady, and above which not at all."""
 SLOW = 0.08
 """Displacement in 0.4 s below which a person does not count as moving [m]."""
 
@@ -46,6 +48,17 @@ def out_of_distribution(
     simulated = np.where(count >= FEWEST_EVEN, _ramp(share, *EVEN_SHARE), 0.0)
     fast = _ramp(np.hypot(*(people.past[:, -1] - people.past[:, 0]).T) / (ROWS - 1.0), *FAST)
     return np.asarray(np.max([even, simulated[window], fast], axis=0))
+
+
+def steadiness(people: AgentHistories) -> Floats:
+    """Return ``[N]``, between 0 and 1, whether the last three displacements of a person are equal, to 0.2 mm.
+
+    Simulated people who walk or stand undisturbed do so, and people in some recordings whose tracks are interpolated or
+    who stand. The last displacement then has no noise, and no learned correction is better on average.
+    """
+    change = np.diff(people.past[:, -4:], 2, axis=1)
+    largest = np.sqrt(change[..., 0] ** 2 + change[..., 1] ** 2).max(axis=1)
+    return np.where(people.seen[:, -4:].all(axis=1), 1.0 - _ramp(largest, *EQUAL), 0.0)
 
 
 def _evenness(people: AgentHistories) -> tuple[Floats, NDArray[np.bool_]]:

@@ -33,7 +33,7 @@ from .anchors import CHAI, resample_paths, scatter_to_slots
 from .filtered_line import filtered_lines
 from .forward_pass import feature_limit, network_output, reach_of
 from .mixture import future_covariances, total_covariances
-from .out_of_distribution import out_of_distribution
+from .out_of_distribution import out_of_distribution, steadiness
 from .own_weights import load_own_weights, load_reaction
 from .plan_reaction import PlanReaction, Walks, reaction_displacements
 
@@ -100,7 +100,8 @@ class AnchorNet(Predictor):
     People who are unlike the training data have a high ``out_of_distribution`` score in the forecast. The corrections
     of the network are multiplied by 1 minus the score: at a score of 1 the set is the fixed anchors, and the single
     trajectory is the line of Kalman filters whose noise is fitted to the track. The line also has a share of up to 0.8
-    in the single trajectory of people who walk straight with a noisy track. Leave-one-out weights have neither.
+    in the single trajectory of people who walk straight with a noisy track. The single trajectory of people whose last
+    three displacements are equal is constant velocity. Leave-one-out weights have none of these.
 
     Fields:
         fold: shipped weights: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with
@@ -287,6 +288,7 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     if "line_share" in numbers:
         line, straight = filtered_lines(people.past, people.seen, people.noise, heading, numbers["basis"])
         single = line + own * (1.0 - numbers["line_share"] * straight[:, None]) * (single - line)
+        single = (1.0 - steadiness(people)[:, None]) * single
     return _Bends(
         np.where(walked[..., None], mode[row, order], 0.0),
         probability[row, order],
