@@ -16,6 +16,7 @@ from rosbags.highlevel import AnyReader
 
 from crowdbot import sensors
 from crowdbot.core import EpisodeError, SpatialPose
+from crowdbot.data import McapOpcode, McapReader, mcap_reader
 from crowdbot.messages import (
     CODECS,
     Codec,
@@ -24,7 +25,7 @@ from crowdbot.messages import (
     image_in,
     points_in,
 )
-from crowdbot.recording import READING_TABLES, export, read_episode, replay, run, step_records
+from crowdbot.recording import READING_TABLES, export, read_episode, repair, replay, run, step_records
 from crowdbot.simulation import Episode
 from crowdbot.trials import parse_trial
 from episode_copies import copy_episode
@@ -268,3 +269,51 @@ def test_a_file_that_changes_after_it_was_opened_is_no_other_reading(
     run(parse_trial(TRIAL.replace('seed="4"', 'seed="5"')), out=path)
     with pytest.raises(EpisodeError, match="it has changed since it was opened"):
         read.readings["robot/depth"][2]
+
+
+def test_chunks_of_readings_are_left_out(recorded: tuple[Path, Episode], monkeypatch: pytest.MonkeyPatch) -> None:
+    path, episode = recorded
+    with path.open("rb") as stream:
+        chunks: dict[int, set[str]] = {}
+        for one in McapReader(stream).messages():
+            chunks.setdefault(one.place.record.start, set()).add(one.topic.topic)
+    apart = [topics for topics in chunks.values() if "/robot/depth/image" in topics]
+    assert apart
+    assert all(topic.count("/") >= 2 and "/people" not in topics for topics in apart for topic in topics)
+    opened, decompress = list[bytes](), mcap_reader._decompress
+    monkeypatch.setattr(mcap_reader, "_decompress", lambda body: opened.append(body) or decompress(body))
+    read = read_episode(path)
+    assert len(opened) == len(chunks) - len(apart)
+    mcap_reader._content.cache_clear()
+    same(read.readings["robot/people"][7], episode.readings["robot/people"][7], "people")
+    assert len(opened) == len(chunks) - len(apart) + 1
+
+
+def test_a_part_of_an_index_is_completed_by_repair(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
+    whole, cut = recorded[0].read_bytes(), tmp_path / "cut.mcap"
+    with recorded[0].open("rb") as stream:
+        records = [(kind, place) for kind, place, _ in McapReader(stream).records()]
+    last = max(k for k, (kind, _) in enumerate(records) if kind == McapOpcode.CHUNK)
+    cut.write_bytes(whole[: records[last + 3][1]])
+    count = {name: len(rows) for name, rows in read_episode(cut).readings.items()}
+    assert count == {name: len(rows) for name, rows in recorded[1].readings.items()}
+    repair(cut)
+    read = read_episode(cut)
+    with cut.open("rb") as stream:
+        messages = sum(1 for _ in McapReader(stream).messages())
+    assert read.complete
+    assert {name: len(rows) for name, rows in read.readings.items()} == count
+    with cut.open("rb") as stream:
+        summary = make_reader(stream, validate_crcs=True).get_summary()
+    assert summary is not None
+    assert summary.statistics is not None
+    assert summary.statistics.message_count == messages
+
+
+@pytest.mark.parametrize("wrong", ["offset", "channel"])
+def test_an_index_that_lies_gives_no_reading(recorded: tuple[Path, Episode], wrong: str) -> None:
+    place = read_episode(recorded[0]).readings["robot/depth"].places[0]
+    suffix, kind, at = place.parts[0]
+    lie = at._replace(offset=at.offset + 1) if wrong == "offset" else at._replace(channel=at.channel + 1)
+    with pytest.raises(EpisodeError, match=r"reading robot/depth at 0 s: McapError: the index of the chunk at byte"):
+        step_records.read_reading(place._replace(parts=((suffix, kind, lie), *place.parts[1:])))

@@ -20,7 +20,7 @@ def episode(tmp_path_factory):
 
 
 def test_a_player_shows_the_recorded_images(browser, episode, tmp_path):
-    file = write_player(episode, tmp_path / "seen.html").path
+    file = write_player(episode, tmp_path / "seen.html", images=True).path
     recorded = read_episode(episode).readings
     context = browser.new_context(viewport={"width": 800, "height": 600}, offline=True)
     page, faults = context.new_page(), []
@@ -56,5 +56,11 @@ def test_a_player_shows_the_recorded_images(browser, episode, tmp_path):
 def test_too_many_images_are_refused(episode, tmp_path, monkeypatch):
     monkeypatch.setattr(player_file, "LARGEST", 60_000)
     with pytest.raises(InputError, match="too long for one file"):
-        write_player(episode, tmp_path / "seen.html")
+        write_player(episode, tmp_path / "seen.html", images=True)
     assert not (tmp_path / "seen.html").exists()
+
+
+def test_a_page_holds_images_by_choice(episode, tmp_path, monkeypatch):
+    monkeypatch.setattr(player_file, "encode_image", None)
+    assert write_player(episode, tmp_path / "seen.html").frames == 16
+    assert "image/0/0" not in (tmp_path / "seen.html").read_text(encoding="utf-8")

@@ -229,6 +229,6 @@ def test_wrong_options_of_a_page_are_refused(tmp_path, capsys):
     summary = record(load_trial("frontal", duration=0.5), out=tmp_path)
     episode = str(summary.path)
     assert main(["export", episode, "--to", str(tmp_path / "a.csv"), "--period", "0.1"]) == 2
-    assert "--period, --folder and --trust are for a page or labels" in capsys.readouterr().err
+    assert "--period, --images, --folder and --trust are for a page or labels" in capsys.readouterr().err
     assert main(["export", episode, "--to", str(tmp_path / "a.html"), "--table", "scans"]) == 2
     assert "--table is for a table" in capsys.readouterr().err

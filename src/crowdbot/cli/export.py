@@ -32,6 +32,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--period", type=float, metavar="S", help="time between two frames of a page in s (default: as recorded)"
     )
     parser.add_argument(
+        "--images", action="store_true", help="let a page hold the recorded images of cameras (default: it holds none)"
+    )
+    parser.add_argument(
         "--labels",
         choices=("coco", "kitti"),
         help="write images and point clouds with boxes, masks and keypoints of people in this format to a folder",
@@ -57,8 +60,10 @@ def main(options: argparse.Namespace) -> int:
         return _write_labels(options)
     if options.to.suffix.lower() == ".html":
         return _write_page(options)
-    if options.period is not None or options.trust or options.folder is not None:
-        raise InputError("--period, --folder and --trust are for a page or labels; give --to FILE.html, or --labels")
+    if options.period is not None or options.trust or options.folder is not None or options.images:
+        raise InputError(
+            "--period, --images, --folder and --trust are for a page or labels; give --to FILE.html, or --labels"
+        )
     rows = export(options.episode, options.to, options.table, options.force)
     has_images = rows > 0 and options.table == "pictures"
     images = {"images": str(folder_of(options.to))} if has_images else {}
@@ -78,8 +83,8 @@ def _write_labels(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
     from crowdbot.generation import export_labels
 
-    if options.table != "people" or options.period is not None:
-        raise InputError("--table and --period are not for labels; leave them out")
+    if options.table != "people" or options.period is not None or options.images:
+        raise InputError("--table, --period and --images are not for labels; leave them out")
     with progress(options.json) as report:
         found = export_labels(
             options.episode, options.to, options.labels, options.force, options.trust,
@@ -102,7 +107,7 @@ def _write_page(options: argparse.Namespace) -> int:
     with progress(options.json) as report:
         page = write_player(
             options.episode, options.to, period=options.period, force=options.force, trust=options.trust,
-            folder=options.folder,
+            folder=options.folder, images=options.images,
             progress=lambda share: report(f"play {options.episode.name}", share),
         )  # fmt: skip
     if options.json:

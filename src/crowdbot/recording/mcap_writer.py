@@ -1,7 +1,8 @@
 """McapWriter: writes MCAP files that are valid after every write, even if the process is killed.
 
-Messages are collected in a chunk. Each write replaces the file footer by the chunk, its index and a new footer without
-a summary. The file can therefore always be opened; only the current chunk can be lost. A finished file has the summary
+Messages are collected in two chunks: those of large channels have their own, so that readers can leave it out. Each
+write replaces the file footer by the chunks, their indexes and a new footer without a summary. The file can therefore
+always be opened; only the current chunks can be lost. A finished file has the summary
 and the indexes for fast access.
 """
 
@@ -46,6 +47,35 @@ def _bytes(*records: McapRecord) -> bytes:
     return bytes(builder.end())  # type: ignore[no-untyped-call]
 
 
+@dataclass
+class _Chunk:
+    """Messages that are not yet written, and their times [ns] and offsets [bytes] by channel."""
+
+    data: bytearray = field(default_factory=bytearray)
+    index: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+
+    def take(self) -> bytes:
+        """Return the chunk with its index as records, and begin a new one."""
+        if not self.data:
+            return b""
+        import zstandard
+
+        raw = bytes(self.data)
+        packed = zstandard.compress(raw)
+        stamps = [stamp for rows in self.index.values() for stamp, _ in rows]
+        head = struct.pack("<QQQII", min(stamps), max(stamps), len(raw), zlib.crc32(raw), 4)
+        body = head + b"zstd" + struct.pack("<Q", len(packed)) + packed
+        parts = [struct.pack("<BQ", McapOpcode.CHUNK, len(body)), body]
+        parts += [_index_record(channel, rows) for channel, rows in self.index.items()]
+        self.data, self.index = bytearray(), {}
+        return b"".join(parts)
+
+
+def _index_record(channel: int, rows: list[tuple[int, int]]) -> bytes:
+    index = struct.pack("<HI", channel, 16 * len(rows)) + b"".join(struct.pack("<QQ", *row) for row in rows)
+    return struct.pack("<BQ", McapOpcode.MESSAGE_INDEX, len(index)) + index
+
+
 SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MCAP_MAGIC
 
 
@@ -63,8 +93,8 @@ class McapWriter:
         self.stream: BinaryIO | None = None
         self.end = 0
         self._before = MCAP_MAGIC + _bytes(Header(profile, library))
-        self._chunk = bytearray()
-        self._index: dict[int, list[tuple[int, int]]] = {}
+        self._chunks = _Chunk(), _Chunk()
+        self._large: set[int] = set()
         self._schemas: dict[str, int] = {}
         self._channels = 0
 
@@ -75,9 +105,18 @@ class McapWriter:
             self._before += _bytes(Schema(self._schemas[name], text.encode(), "ros2msg", name))
         return self._schemas[name]
 
-    def channel(self, topic: str, schema: int, quality: str = "") -> int:
-        """Return the id of a new channel; ``quality`` is the quality of service in ROS 2 (YAML, as in rosbag2)."""
+    def channel(self, topic: str, schema: int, quality: str = "", large: bool = False) -> int:
+        """Return the id of a new channel.
+
+        Args:
+            topic: its topic.
+            schema: id of its message type.
+            quality: quality of service in ROS 2 (YAML, as in rosbag2).
+            large: whether its messages are in the chunks of large ones; other messages of their times come first.
+        """
         self._channels += 1
+        if large:
+            self._large.add(self._channels)
         self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": quality}, schema))
         return self._channels
 
@@ -91,20 +130,20 @@ class McapWriter:
 
     def message(self, channel: int, nanoseconds: int, data: bytes) -> None:
         """Add a message."""
-        self._index.setdefault(channel, []).append((nanoseconds, len(self._chunk)))
-        self._chunk += struct.pack("<BQHIQQ", McapOpcode.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
-        self._chunk += data
+        chunk = self._chunks[channel in self._large]
+        chunk.index.setdefault(channel, []).append((nanoseconds, len(chunk.data)))
+        chunk.data += struct.pack("<BQHIQQ", McapOpcode.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
+        chunk.data += data
 
     @property
     def large(self) -> bool:
-        """Whether the current chunk is large enough to be written early."""
-        return len(self._chunk) > LARGE
+        """Whether a chunk is large enough to be written early."""
+        return any(len(chunk.data) > LARGE for chunk in self._chunks)
 
     def flush(self) -> None:
         """Write all pending data."""
-        data = self._before + self._packed()
-        self._before, self._index = b"", {}
-        self._chunk.clear()
+        data = self._before + b"".join(chunk.take() for chunk in self._chunks)
+        self._before = b""
         if data:
             self._put(data + SHORT_END)
             self.end += len(data)
@@ -116,23 +155,6 @@ class McapWriter:
             with stream:
                 if finished:
                     finish(stream)
-
-    def _packed(self) -> bytes:
-        """Return the chunk and its message index."""
-        if not self._chunk:
-            return b""
-        import zstandard
-
-        raw = bytes(self._chunk)
-        data = zstandard.compress(raw)
-        stamps = [stamp for rows in self._index.values() for stamp, _ in rows]
-        head = struct.pack("<QQQII", min(stamps), max(stamps), len(raw), zlib.crc32(raw), 4)
-        body = head + b"zstd" + struct.pack("<Q", len(data)) + data
-        parts = [struct.pack("<BQ", McapOpcode.CHUNK, len(body)), body]
-        for channel, rows in self._index.items():
-            index = struct.pack("<HI", channel, 16 * len(rows)) + b"".join(struct.pack("<QQ", *row) for row in rows)
-            parts += [struct.pack("<BQ", McapOpcode.MESSAGE_INDEX, len(index)), index]
-        return b"".join(parts)
 
     def _put(self, data: bytes) -> None:
         if self.stream is not None:
@@ -218,7 +240,7 @@ def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None
     for kind, place, body in tape.records():
         layout.take(kind, place, body)
     end, crc = tape.end, tape.crc
-    added = b""
+    added = b"" if tape.ended else _missing_index(stream, layout, end)
     for name, values in (more or {}).items():
         record = _bytes(Metadata(name, dict(values)))
         layout.take(McapOpcode.METADATA, end + len(added), record[9:])
@@ -229,6 +251,21 @@ def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None
     stream.truncate()
     stream.flush()
     os.fsync(stream.fileno())
+
+
+def _missing_index(stream: BinaryIO, layout: _Layout, end: int) -> bytes:
+    """Return the index records of the last chunk that a killed writer has not written, to be put at ``end``."""
+    rows: dict[int, list[tuple[int, int]]] = {}
+    stream.seek(0)
+    for one in McapReader(stream).messages():
+        if layout.chunks and one.place.record.start == layout.chunks[-1].chunk_start_offset:
+            rows.setdefault(one.place.channel, []).append((one.stamp, one.place.offset))
+    added = b""
+    for channel in [one for one in rows if one not in layout.chunks[-1].message_index_offsets]:
+        record = _index_record(channel, rows[channel])
+        layout.take(McapOpcode.MESSAGE_INDEX, end + len(added), record[9:])
+        added += record
+    return added
 
 
 def _summary(layout: _Layout, start: int) -> bytes:

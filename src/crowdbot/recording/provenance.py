@@ -245,7 +245,7 @@ def _texts(path: Path, topic: str) -> Iterable[tuple[int, str]]:
     messages, found = Messages(), []
     try:
         with path.open("rb") as stream:
-            for heard in McapReader(stream).messages():
+            for heard in McapReader(stream).messages(lambda channel: channel.topic != topic):
                 if heard.topic.topic == topic:
                     found.append((heard.stamp, str(messages.decode_message(heard.data, heard.topic.kind).data)))
     except Exception as error:  # damaged files cause many kinds of exceptions

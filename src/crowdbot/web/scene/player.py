@@ -77,12 +77,13 @@ def write_player(
     force: bool = False,
     trust: bool = False,
     folder: Path | None = None,
+    images: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlayerFile:
     """Write an episode as one HTML file that plays in any browser, without a server and without the net.
 
     The episode runs again with its seed and its orders, with bodies of people. Between two frames the page blends.
-    Images of cameras are those of the records.
+    Images of cameras are those of the records, if they are wanted.
 
     Args:
         episode: the episode, which is not a branch.
@@ -90,6 +91,7 @@ def write_player(
         period: time between two frames [s] (default: that of the recording), a multiple of the time step.
         force: whether an existing file is replaced.
         trust, folder: see :func:`crowdbot.recording.replay`.
+        images: whether the file holds the images of cameras.
         progress: called with the completed fraction, 0 to 1.
 
     Raises:
@@ -126,8 +128,8 @@ def write_player(
             running.step()
             if progress is not None:
                 progress(simulation.tick / max(1, recorded.steps))
-        images = _add_images(pack, simulation, recorded)
-        text = _page(pack, simulation, episode_events(recorded), images)
+        shown = _add_images(pack, simulation, recorded) if images else []
+        text = _page(pack, simulation, episode_events(recorded), shown)
         path.write_text(text, encoding="utf-8")
     return PlayerFile(path, frames, last, len(text.encode()))
 

@@ -106,9 +106,7 @@ class RecordedScene:
         self._slots = slots
         self.ids = simulation.world.ids[0].copy()
         self._at = math.nan
-        self._reading_times = {
-            name: [float(np.ravel(one.time)[0]) for one in rows] for name, rows in episode.readings.items()
-        }
+        self._reading_times = {name: rows.times for name, rows in episode.readings.items()}
         self._robot_names = [str(one["name"]) for one in json.loads(episode.metadata["robots"])]
         self._force_times = [one.time for one in episode.forces]
         trial = simulation.trial
