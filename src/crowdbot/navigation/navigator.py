@@ -10,14 +10,21 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from crowdbot.core import InputError, Twist
+from crowdbot.typing import Bools, Floats
 
 from .action import Action
+from .batch_rows import share_time
 from .decision_thread import call_within
 from .decisions import Decisions, checked_joints
 from .navigator_memory import copy_memory
 from .observation import Observation
 from .observation_batch import ObservationBatch
+
+BatchKernels = Callable[[ObservationBatch, Floats], Bools]
+"""Writes the twists ``[N, 3]`` of the environments that it decides, and returns which they are."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +123,8 @@ class Navigator(ABC):
     ) -> Decisions:
         """Return the decisions in N environments, the same as :meth:`decide` for each.
 
-        The default calls :meth:`decide` for each environment. An exception is stored as the failure of its
-        environment; the other environments are not affected.
+        The default calls :meth:`decide` for each environment that the kernels of the navigator do not decide. An
+        exception is stored as the failure of its environment; the other environments are not affected.
 
         Args:
             batch: what the robot knows in each environment.
@@ -128,9 +135,18 @@ class Navigator(ABC):
             limit: real time [s] after which a decision that has not returned is a failure, by :func:`call_within`;
                 None: no limit.
         """
-        decisions = Decisions.still(memories)
-        self._decide_rows(range(len(batch)), batch, decisions, robot, timer, limit)
+        decisions, rows = Decisions.still(memories), list(range(len(batch)))
+        if kernels := self._kernels():
+            begin = timer() if timer else 0.0
+            decided = kernels(batch, decisions.twist)
+            share_time(decisions, decided, begin, timer)
+            rows = np.flatnonzero(~decided).tolist()
+        self._decide_rows(rows, batch, decisions, robot, timer, limit)
         return decisions
+
+    def _kernels(self) -> BatchKernels | None:
+        """Return the kernels that decide in many environments at once, with the bits of :meth:`act`."""
+        return None
 
     def _decide_rows(
         self,

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
-from crowdbot.typing import Floats
+from crowdbot.typing import Bools, Floats
 
-from .batch_rows import drive_numbers, rows_for_kernels, share_time
-from .decisions import Decisions
+from .batch_rows import drive_numbers, rows_for_kernels
 from .dynamic_window import dynamic_window_twist, dynamic_window_twists
 from .goal_motion import SLOWING_TIME, holonomic_twists
-from .navigator import Navigator
+from .navigator import BatchKernels, Navigator
 from .observation import Observation, wall_radius
 from .observation_batch import ObservationBatch
 from .orca_search import choose_velocities
@@ -97,29 +95,19 @@ class ORCANavigator(Navigator):
         holonomic_twists(np.ones(1, np.bool_), pose, wish, numbers, float(observation.dt), out)
         return Twist(*out[0].tolist())
 
-    def decide_batch(
-        self,
-        batch: ObservationBatch,
-        memories: Sequence[Any],
-        robot: str = "",
-        timer: Callable[[], float] | None = None,
-        limit: float | None = None,
-    ) -> Decisions:
-        """Return the decisions in N environments, with two kernels; see :meth:`Navigator.decide_batch`."""
-        if not self._keeps(ORCANavigator, "act", "velocity", "_wish"):
-            return super().decide_batch(batch, memories, robot, timer, limit)
-        decisions, begin = Decisions.still(memories), timer() if timer else 0.0
+    def _kernels(self) -> BatchKernels | None:
+        return self._decided if self._keeps(ORCANavigator, "act", "velocity", "_wish") else None
+
+    def _decided(self, batch: ObservationBatch, out: Floats) -> Bools:
+        """Write the twists of the environments with regular values, and return which they are."""
         asking = rows_for_kernels(batch, with_people=True)
         velocity = self._velocities(batch, asking)
         if batch.limits.holonomic:
             numbers = drive_numbers(batch.limits, self.speed)
-            holonomic_twists(asking, batch.pose, velocity, numbers, float(batch.dt), decisions.twist)
+            holonomic_twists(asking, batch.pose, velocity, numbers, float(batch.dt), out)
         else:
-            dynamic_window_twists(batch, asking, velocity, self.speed, decisions.twist)
-        share_time(decisions, asking, begin, timer)
-        if not asking.all():
-            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer, limit)
-        return decisions
+            dynamic_window_twists(batch, asking, velocity, self.speed, out)
+        return asking
 
     def _velocities(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> Floats:
         """Return the velocities ``[N, 2]`` [m/s] chosen by ORCA in the asking environments."""

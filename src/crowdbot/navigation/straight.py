@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Twist, check_number
-from crowdbot.typing import Floats
+from crowdbot.typing import Bools, Floats
 
-from .batch_rows import drive_numbers, rows_for_kernels, share_time
-from .decisions import Decisions
+from .batch_rows import drive_numbers, rows_for_kernels
 from .goal_motion import holonomic_twists, twists_towards, velocities_towards
-from .navigator import Navigator
+from .navigator import BatchKernels, Navigator
 from .observation import Observation
 from .observation_batch import ObservationBatch
 
@@ -62,28 +59,18 @@ class Straight(Navigator):
         _move_to(asking, place, goal, waypoint, numbers, float(observation.dt), out)
         return Twist(*out[0].tolist())
 
-    def decide_batch(
-        self,
-        batch: ObservationBatch,
-        memories: Sequence[Any],
-        robot: str = "",
-        timer: Callable[[], float] | None = None,
-        limit: float | None = None,
-    ) -> Decisions:
-        """Return the decisions in N environments, with one kernel; see :meth:`Navigator.decide_batch`."""
-        if not self._keeps(Straight, "act"):
-            return super().decide_batch(batch, memories, robot, timer, limit)
-        decisions, begin = Decisions.still(memories), timer() if timer else 0.0
+    def _kernels(self) -> BatchKernels | None:
+        return self._decided if self._keeps(Straight, "act") else None
+
+    def _decided(self, batch: ObservationBatch, out: Floats) -> Bools:
+        """Write the twists of the environments with regular values, and return which they are."""
         asking = rows_for_kernels(batch, with_people=False)
         places, numbers = (batch.pose, batch.goal, batch.waypoint), drive_numbers(batch.limits, self.speed)
         if batch.limits.holonomic:
-            _move_to(asking, *places, numbers, float(batch.dt), decisions.twist)
+            _move_to(asking, *places, numbers, float(batch.dt), out)
         else:
-            twists_towards(asking, *places, numbers, decisions.twist)
-        share_time(decisions, asking, begin, timer)
-        if not asking.all():
-            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer, limit)
-        return decisions
+            twists_towards(asking, *places, numbers, out)
+        return asking
 
 
 def _move_to(

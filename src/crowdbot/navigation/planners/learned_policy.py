@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -10,15 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Paper, Twist, check_number
-from crowdbot.navigation.batch_rows import drive_numbers, rows_for_kernels, share_time
-from crowdbot.navigation.decisions import Decisions
+from crowdbot.navigation.batch_rows import drive_numbers, rows_for_kernels
 from crowdbot.navigation.dynamic_window import dynamic_window_twists
 from crowdbot.navigation.goal_motion import holonomic_twists
-from crowdbot.navigation.navigator import Navigator
+from crowdbot.navigation.navigator import BatchKernels, Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.observation_batch import AgentsInView, ObservationBatch
 from crowdbot.navigation.wall_arrays import wall_arrays
-from crowdbot.typing import Floats
+from crowdbot.typing import Bools, Floats
 
 from .policy_kernels import OWN_VALUES, PERSON_VALUES, apply_network, avoid_contacts, limit_velocities, write_inputs
 from .policy_weights import read_policy
@@ -124,25 +122,15 @@ class PolicyNavigator(Navigator):
         self._move(_as_batch(observation), asking, out)
         return Twist(*out[0].tolist())
 
-    def decide_batch(
-        self,
-        batch: ObservationBatch,
-        memories: Sequence[Any],
-        robot: str = "",
-        timer: Callable[[], float] | None = None,
-        limit: float | None = None,
-    ) -> Decisions:
-        """Return the decisions in N environments, with kernels; see :meth:`Navigator.decide_batch`."""
-        if not self._keeps(PolicyNavigator, "act", "_move"):
-            return super().decide_batch(batch, memories, robot, timer, limit)
-        decisions, begin = Decisions.still(memories), timer() if timer else 0.0
+    def _kernels(self) -> BatchKernels | None:
+        return self._decided if self._keeps(PolicyNavigator, "act", "_move") else None
+
+    def _decided(self, batch: ObservationBatch, out: Floats) -> Bools:
+        """Write the twists of the environments with regular values, and return which they are."""
         asking = rows_for_kernels(batch, with_people=True)
         if asking.any():
-            self._move(batch, asking, decisions.twist)
-        share_time(decisions, asking, begin, timer)
-        if not asking.all():
-            self._decide_rows(np.flatnonzero(~asking).tolist(), batch, decisions, robot, timer, limit)
-        return decisions
+            self._move(batch, asking, out)
+        return asking
 
     def _move(self, batch: ObservationBatch, asking: NDArray[np.bool_], out: Floats) -> None:
         """Write the twists ``[N, 3]`` of the asking environments."""
