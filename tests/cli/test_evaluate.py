@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from crowdbot.cli import main
+from crowdbot.cli.output import print_table
 from crowdbot.core import parse_xml
 
 QUICK = ["evaluate", "frontal", "--set", "duration=2", "--seeds", "0:3"]
@@ -139,3 +140,10 @@ def test_a_killed_evaluation_continues_with_the_same_table(tmp_path: Path, capsy
     again = json.loads(capsys.readouterr().out)
     assert again["cells"] == whole["cells"]
     assert again["comparisons"] == whole["comparisons"]
+
+
+def test_names_in_a_table_that_is_too_wide_break_at_their_marks_only(capsys: pytest.CaptureFixture[str]) -> None:
+    head = ["navigator", "robot", *(f"collision\nrate{k}" for k in range(12))]
+    print_table("hall", head, [["mine.py:Mine", "mybot", *["0.00421 [0.00421, 0.641]"] * 12]], words=2)
+    names = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.split() and line[1] != " "]
+    assert [name for name in names if name.startswith(("mine", "Mi", "ne"))] == ["mine.py:", "Mine"]

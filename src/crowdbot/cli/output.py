@@ -73,7 +73,8 @@ def print_table(
         lines = [[*own, *row[words:]] for own, row in zip(names, lines, strict=True)]
     table = Table(box=box.SIMPLE_HEAD, show_header=any(head), padding=0 if narrow else (0, 1))
     for index, name in enumerate(head):
-        table.add_column(name, justify="left" if index < words else "right", overflow="fold")
+        whole = narrow and index < words  # such names are broken already; numbers give way instead
+        table.add_column(name, justify="left" if index < words else "right", overflow="fold", no_wrap=whole)
     for line in lines:
         table.add_row(*line)
     console.print(title, style="italic")
