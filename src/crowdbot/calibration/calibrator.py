@@ -204,7 +204,7 @@ class Calibrator:
             rngs = [stream(seed, "calibrate", w) for w in range(len(pasts[0]))]
             fit = self.fit_each(pasts[0], rngs, progress, start, limit)
         if fit.persons == 0:
-            where = f"{fit.windows} windows of {', '.join(one.source for one in pasts) or 'no recording'}"
+            where = f"{fit.windows} windows of {', '.join(past.source for past in pasts) or 'no recording'}"
             raise InputError(
                 f"calibration: nobody in {where} can be compared by {kebab_case(type(self.cost).__name__)};"
                 " people must be observed at enough rows, and with others if the cost compares distances"
@@ -229,17 +229,17 @@ class Calibrator:
         starts = self._starts(past, given, start)
         size = max(1, AGENTS_AT_ONCE // (CANDIDATES * max(1, past.position.shape[2])))
         counted = np.zeros(past.id.shape, dtype=np.bool_)
-        found: list[SearchResult] = []
+        search_results: list[SearchResult] = []
         for first in range(0, len(past), size):
             part = slice(first, first + size)
             task = _Task(self, past[part], given[part], _part_of(progress, first, len(past), self.budget))
             search = cast(Search, self.search)
             own = None if limit is None else limit.share(-(-(len(past) - first) // size))
-            found.append(
+            search_results.append(
                 search.minimize(task, space.low, space.high, list(rngs[part]), self.budget, starts[:, part], own)
             )
             counted[part] = task.counted
-        return self._fit(found, given, past, counted, begin)
+        return self._fit(search_results, given, past, counted, begin)
 
     def person_costs(self, past: Windows, values: Floats) -> Floats:
         """Return the costs ``[S, W, A]`` [m] of people for S sets of shared parameters ``[S, D]``; NaN without a cost.

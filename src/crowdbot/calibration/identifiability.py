@@ -193,10 +193,10 @@ def _person_costs(calibrator: Calibrator, pasts: list[Windows], sets: Floats) ->
     """Return the costs ``[S, N]`` of people in windows, and the person of each column."""
     costs, people, known = [], [], 0
     for past in pasts:
-        found = calibrator.person_costs(past, sets)
-        counted = ~np.any(np.isnan(found), axis=0)
+        person_costs = calibrator.person_costs(past, sets)
+        counted = ~np.any(np.isnan(person_costs), axis=0)
         _, person = np.unique(past.id[counted], return_inverse=True)
-        costs.append(found[:, counted])
+        costs.append(person_costs[:, counted])
         people.append(person + known)
         known += int(person.max(initial=-1)) + 1
     return np.concatenate(costs, axis=1), np.concatenate(people)
@@ -228,14 +228,18 @@ def plot_profiles(profiles: Sequence[ParameterProfile], file: Path) -> Path:
     rows = -(-len(profiles) // columns)
     figure = Figure(figsize=(3.1 * columns + 0.4, 2.5 * rows + 0.3), dpi=110, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
-    for axis, one in zip(axes.flat, profiles, strict=False):
-        start = float(one.cost[one.values == one.best][0]) if one.best in one.values else float(one.cost.min())
-        axis.axvspan(*one.interval, color=RANGE, alpha=0.25, linewidth=0)
-        axis.axvline(one.best, color=BEST, linewidth=1.2)
-        axis.fill_between(one.values, start + one.low, start + one.high, color=LINE, alpha=0.2, linewidth=0)
-        axis.plot(one.values, one.cost, "o-", color=LINE, markersize=3, linewidth=1.2)
-        axis.set_xlabel(f"{one.name.replace('_', ' ')} [{one.unit}]", fontsize=9)
-        axis.set_title(f"identified: {one.identified}", fontsize=9)
+    for axis, profile in zip(axes.flat, profiles, strict=False):
+        start = (
+            float(profile.cost[profile.values == profile.best][0])
+            if profile.best in profile.values
+            else float(profile.cost.min())
+        )
+        axis.axvspan(*profile.interval, color=RANGE, alpha=0.25, linewidth=0)
+        axis.axvline(profile.best, color=BEST, linewidth=1.2)
+        axis.fill_between(profile.values, start + profile.low, start + profile.high, color=LINE, alpha=0.2, linewidth=0)
+        axis.plot(profile.values, profile.cost, "o-", color=LINE, markersize=3, linewidth=1.2)
+        axis.set_xlabel(f"{profile.name.replace('_', ' ')} [{profile.unit}]", fontsize=9)
+        axis.set_title(f"identified: {profile.identified}", fontsize=9)
         axis.tick_params(labelsize=8)
         axis.grid(alpha=0.25, linewidth=0.6)
     for axis in axes.flat[len(profiles) :]:

@@ -403,11 +403,11 @@ class Genetic(Search):
         """Return the best parameters of each person, best first, their costs and ages, without expired costs."""
         count = min(self.population, len(children) + len(population))
         shape = (count, *cost.shape[1:])
-        found = np.empty((*shape, population.shape[-1])), np.empty(shape), np.empty(shape)
+        fittest = np.empty((*shape, population.shape[-1])), np.empty(shape), np.empty(shape)
         values: list[Any] = [np.ascontiguousarray(part) for part in (children, population, measured, cost, age)]
-        values += [float(self.memory), *found]
+        values += [float(self.memory), *fittest]
         keep_fittest(*values)
-        return found
+        return fittest
 
     def _children(self, state: SearchState, population: Floats) -> Floats:
         # Leaves one evaluation for the last child, the crowd of the best parameters of all people.

@@ -125,7 +125,7 @@ def _write_ndjson(file: Path, past: Windows, columns: dict[str, Any]) -> None:
 def _read_npz(file: Path) -> dict[str, Any]:
     with zipfile.ZipFile(file) as archive:
         entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
-        found = {}
+        npz = {}
         for name in {*COLUMNS, "weight"} & set(entries):
             with archive.open(entries[name]) as stream:
                 version = np.lib.format.read_magic(stream)
@@ -134,8 +134,8 @@ def _read_npz(file: Path) -> dict[str, Any]:
             if math.prod(shape) > MAX_ROWS or kind.hasobject or kind.itemsize > 16:  # memory is taken by the header
                 raise DataError(f"{file}: column {name} has shape {list(shape)}, more than {MAX_ROWS} numbers")
             with archive.open(entries[name]) as stream:
-                found[name] = np.lib.format.read_array(stream, allow_pickle=False)
-    return found
+                npz[name] = np.lib.format.read_array(stream, allow_pickle=False)
+    return npz
 
 
 def _read_parquet(file: Path) -> dict[str, Any]:

@@ -59,8 +59,8 @@ class PlaceLayout:
         places = shapely.points(np.asarray(points, dtype=np.float64))
         polygons = [shapely.polygons(ring) for ring in self.rings if len(ring) > 2]
         clockwise = [not shapely.is_ccw(polygon.exterior) for polygon in polygons]
-        borders = [one for one, turned in zip(polygons, clockwise, strict=True) if turned]
-        solids = [one for one, turned in zip(polygons, clockwise, strict=True) if not turned]
+        borders = [polygon for polygon, turned in zip(polygons, clockwise, strict=True) if turned]
+        solids = [polygon for polygon, turned in zip(polygons, clockwise, strict=True) if not turned]
         out = np.zeros(len(places), dtype=np.bool_)
         if borders:
             out |= ~shapely.intersects(shapely.union_all(borders).buffer(NEAR), places)

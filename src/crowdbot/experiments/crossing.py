@@ -73,7 +73,7 @@ class CrossingStudy(Study):
         ]
         gaps = swept_clearance(episode.times, episode.position, episode.radius, episode.active, robot)[:, agent]
         clearance = float(gaps.min())
-        touched = any(one.other == str(int(episode.ids[agent])) for one in episode.contacts)
+        touched = any(contact.other == str(int(episode.ids[agent])) for contact in episode.contacts)
         side = np.array([-ways[0][1], ways[0][0]])
         values = {
             "first": _first(*times),

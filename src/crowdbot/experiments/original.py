@@ -70,15 +70,15 @@ def import_experiment(
 
 def _names(entries: Sequence[str]) -> dict[str, str]:
     """Return a unique short name for each trial file."""
-    found: dict[str, str] = {}
+    names: dict[str, str] = {}
     for entry in dict.fromkeys(entries):
         short = re.sub("[^A-Za-z0-9_]", "_", PurePosixPath(entry).stem)[:30]
         short = short if short[:1].isascii() and short[:1].isalpha() else f"trial_{short}"
         name, number = short, 2
-        while name.lower() in (one.lower() for one in found.values()):
+        while name.lower() in (name.lower() for name in names.values()):
             name, number = f"{short}_{number}", number + 1
-        found[entry] = name
-    return found
+        names[entry] = name
+    return names
 
 
 def _times(sequence: Sequence[str]) -> int:

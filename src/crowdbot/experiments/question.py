@@ -134,11 +134,11 @@ class Choice(Question):
     def _taken(self, value: Any) -> Answer:
         known = [option.value for option in self.options]
         given = list(value) if self.multiple and isinstance(value, list | tuple) else [value]
-        for one in given:
-            if not isinstance(one, str) or one not in known:
-                meant = did_you_mean(str(one), known)
+        for item in given:
+            if not isinstance(item, str) or item not in known:
+                meant = did_you_mean(str(item), known)
                 raise InputError(
-                    f"{quote_value(one)} is not an answer to {self.name!r}{f'{meant};' if meant else ','} it must "
+                    f"{quote_value(item)} is not an answer to {self.name!r}{f'{meant};' if meant else ','} it must "
                     f"be"
                     f" {self.hint}"
                 )
@@ -300,7 +300,7 @@ def sickness_scores(answers: Mapping[str, Any]) -> dict[str, float]:
     if not all(isinstance(answers.get(name), int | float) for name in SYMPTOMS):
         return {}
     sums = {
-        name: sum(answers[one] for one, symptom in SYMPTOMS.items() if letter in symptom.scales)
+        name: sum(answers[item] for item, symptom in SYMPTOMS.items() if letter in symptom.scales)
         for name, (letter, _) in WEIGHTS.items()
     }
     scores = {name: round(sums[name] * weight, 2) for name, (_, weight) in WEIGHTS.items()}
@@ -373,8 +373,8 @@ def questionnaire_questions(name: str) -> tuple[Question, ...]:
     """
     if name == "sickness":
         return tuple(
-            Scale(name=one, text=symptom.text, low=0, high=3, low_text="none", high_text="severe")
-            for one, symptom in SYMPTOMS.items()
+            Scale(name=item, text=symptom.text, low=0, high=3, low_text="none", high_text="severe")
+            for item, symptom in SYMPTOMS.items()
         )
     return tuple(
         Scale(name=one, text=item.text, low=1, high=HIGHEST, low_text=item.ends[0], high_text=item.ends[1])
@@ -394,7 +394,7 @@ def questionnaire_scores(answers: Mapping[str, Any]) -> dict[str, float]:
     """
     scores = {f"sickness_{name}": score for name, score in sickness_scores(answers).items()}
     for name, items in ITEMS.items():
-        if not all(isinstance(answers.get(one), int | float) for one in items):
+        if not all(isinstance(answers.get(item), int | float) for item in items):
             continue
         found: dict[str, list[float]] = {}
         for one, item in items.items():

@@ -61,7 +61,7 @@ def summary(folder: Path | str) -> list[Row]:
         folders = [Path(folder)]
     if not folders:
         raise EpisodeError(f"{folder} contains no sessions; give the output folder of 'experiment run' (--out)")
-    found = [session_of(one) for one in folders]
+    found = [session_of(folder) for folder in folders]
     rows = [
         row for participant, session in sorted(found, key=lambda one: one[0]) for row in _rows(participant, session)
     ]

@@ -123,7 +123,7 @@ def _facts(trial: Trial) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, tuple | list):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return value if isinstance(value, int | float | str | bool) else repr(value)
 
 
@@ -140,7 +140,7 @@ def card_text(card: DataCard) -> str:
         "| --- | --- | --- | --- | --- | --- | --- |",
     ]
     for name, facts in card.trials.items():
-        sensors = ", ".join(f"{key} ({one['type']}, {one['rate']:g} Hz)" for key, one in facts["sensors"].items())
+        sensors = ", ".join(f"{key} ({item['type']}, {item['rate']:g} Hz)" for key, item in facts["sensors"].items())
         numbers = f"{facts['duration']:g} | {facts['step']:g} | {facts['people']}"
         lines.append(f"| {name} | {facts['world']} | {numbers} | {facts['crowd']} | {sensors} |")
     lines += ["", "| table | rows |", "| --- | --- |"]

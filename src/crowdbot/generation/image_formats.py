@@ -47,16 +47,16 @@ def write_images(tables: Mapping[str, Table], folder: Path) -> list[Path]:
 
 
 def _annotations(table: Table, row: int, image: int, before: int) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = []
+    result: list[dict[str, Any]] = []
     for column, person in enumerate(table["ids"][row].tolist()):
         box = table["boxes"][row, column].tolist()
         if person < 0 or not box[2]:
             continue
         mask = table["hit"][row] == person
         hidden = float(table["occluded"][row, column])
-        found.append(
+        result.append(
             {
-                "id": before + len(found) + 1,
+                "id": before + len(result) + 1,
                 "image_id": image,
                 "category_id": PERSON_CATEGORY,
                 "person": person,
@@ -68,7 +68,7 @@ def _annotations(table: Table, row: int, image: int, before: int) -> list[dict[s
                 **_space_labels(table, row, column),
             }
         )
-    return found
+    return result
 
 
 def _space_labels(table: Table, row: int, column: int) -> dict[str, Any]:
@@ -77,11 +77,11 @@ def _space_labels(table: Table, row: int, column: int) -> dict[str, Any]:
         return {}
     points, solid = table["keypoints"][row, column].astype(float), table["solid_boxes"][row, column].astype(float)
     flat = [round(value, 2) if k % 3 < 2 else int(value) for k, value in enumerate(points.ravel().tolist())]
-    found: dict[str, Any] = {"keypoints": flat, "num_keypoints": int(np.count_nonzero(points[:, 2]))}
+    space_labels: dict[str, Any] = {"keypoints": flat, "num_keypoints": int(np.count_nonzero(points[:, 2]))}
     if not np.isnan(solid[0]):
         center, size, heading = solid[:3].tolist(), solid[3:6].tolist(), float(solid[6])
-        found["box_3d"] = {"center": center, "size": size, "heading": heading}
-    return found
+        space_labels["box_3d"] = {"center": center, "size": size, "heading": heading}
+    return space_labels
 
 
 def encode_mask(mask: NDArray[np.bool_]) -> dict[str, Any]:
@@ -109,10 +109,10 @@ def join_annotations(files: Iterable[Path], info: Mapping[str, Any], categories:
     for file in files:
         part = json.loads(file.read_text(encoding="utf-8"))
         shift = len(images)
-        images += [one | {"id": one["id"] + shift} for one in part["images"]]
+        images += [item | {"id": item["id"] + shift} for item in part["images"]]
         before = len(annotations)
         annotations += [
-            one | {"id": one["id"] + before, "image_id": one["image_id"] + shift} for one in part["annotations"]
+            item | {"id": item["id"] + before, "image_id": item["image_id"] + shift} for item in part["annotations"]
         ]
     bones = {"keypoints": list(KEYPOINTS), "skeleton": [list(edge) for edge in KEYPOINT_EDGES]}
     names = [{"id": k + 1, "name": name, **(bones if name == "person" else {})} for k, name in enumerate(categories)]
@@ -160,14 +160,14 @@ def _write_images(table: Table, place: Path) -> list[Path]:
 
 
 def _lines(table: Table, row: int, pose: SpatialPose) -> list[str]:
-    found = []
+    lines = []
     high, wide = table["rgb"].shape[1:3]
     for column, person in enumerate(table["ids"][row].tolist()):
         pixels, solid = table["boxes"][row, column], table["solid_boxes"][row, column].astype(float)
         if person >= 0 and pixels[2] and not np.isnan(solid[0]):
             hidden = float(table["occluded"][row, column])
-            found.append(kitti_line(pixels, solid, pose, table["intrinsics"][row], (int(wide), int(high)), hidden))
-    return found
+            lines.append(kitti_line(pixels, solid, pose, table["intrinsics"][row], (int(wide), int(high)), hidden))
+    return lines
 
 
 def kitti_line(

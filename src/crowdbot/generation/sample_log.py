@@ -42,7 +42,7 @@ def occluded_shares(
     """
     shares = np.empty(active.shape)
     arrays = (origin, position, radius, walls[0], walls[1])
-    origin, position, radius, start, end = (np.ascontiguousarray(one, dtype=np.float64) for one in arrays)
+    origin, position, radius, start, end = (np.ascontiguousarray(array, dtype=np.float64) for array in arrays)
     _fill_shares(origin, position, radius, np.ascontiguousarray(active), own, start, end, shares)
     return shares
 
@@ -153,7 +153,7 @@ class SampleLog:
         )  # fmt: skip
         if frame.due:
             self._keep_state(agents, scene.velocity, scene.heading, frame.twists[None], frame.commands[None])
-        columns = {int(one): k for k, one in enumerate(frame.ids)}
+        columns = {int(id_): k for k, id_ in enumerate(frame.ids)}
         for robot, mount, reading in frame.readings:
             self._keep_reading(robot.name, mount.name, agents, _by_column(reading, columns))
 
@@ -257,21 +257,21 @@ def pixel_boxes(hit: Ints, agents: int) -> NDArray[np.int32]:
 
 def _fields(reading: Reading) -> Table:
     """Return the arrays of a reading by name; poses become two arrays, numbers single precision."""
-    found: Table = {}
+    table: Table = {}
     for field in dataclasses.fields(reading):
         value = getattr(reading, field.name)
         if field.name in ("time", "pose", "hit", "part", "lens") or value is None:
             continue
         if isinstance(value, Pose | SpatialPose):
-            found[f"{field.name}_position"] = value.position.astype(np.float32)
+            table[f"{field.name}_position"] = value.position.astype(np.float32)
             direction = value.heading if isinstance(value, Pose) else value.rotation
-            found[f"{field.name}_heading"] = np.asarray(direction, dtype=np.float32)
+            table[f"{field.name}_heading"] = np.asarray(direction, dtype=np.float32)
             continue
         array = np.asarray(value)
         name = f"shared.{field.name}" if field.name in type(reading).shared_fields else field.name
         precision = np.float16 if field.name == "cos_incidence" else np.float32
-        found[name] = array.astype(precision) if array.dtype == np.float64 else array
-    return found
+        table[name] = array.astype(precision) if array.dtype == np.float64 else array
+    return table
 
 
 def _absent(values: Floats, active: NDArray[np.bool_]) -> NDArray[np.float32]:
@@ -294,7 +294,7 @@ def _by_column(reading: Reading, columns: Mapping[int, int]) -> Reading:
         names = ("present", "position", "velocity", "radius", "heading")
         return dataclasses.replace(reading, **{name: getattr(reading, name)[:, order] for name in names})
     hit = getattr(reading, "hit", None)
-    if hit is None or all(one == k for one, k in columns.items()):
+    if hit is None or all(item == k for item, k in columns.items()):
         return reading
     places = np.full(1 + max([*columns, int(np.max(hit, initial=0))]), -1)
     places[list(columns)] = list(columns.values())
@@ -308,10 +308,10 @@ def _join(parts: Sequence[Table]) -> Table:
     episode, time = (np.concatenate([part[name] for part in parts]) for name in ("episode", "nanoseconds"))
     places = np.empty(len(episode), dtype=np.int64)
     places[np.lexsort((time, episode))] = np.arange(len(episode))
-    found: Table = {}
+    table: Table = {}
     for name, first in parts[0].items():
-        found[name] = first if name.startswith("shared.") else _place([part[name] for part in parts], places, name)
-    return found
+        table[name] = first if name.startswith("shared.") else _place([part[name] for part in parts], places, name)
+    return table
 
 
 def _place(arrays: Sequence[NDArray[Any]], places: Ints, name: str) -> NDArray[Any]:
@@ -320,13 +320,13 @@ def _place(arrays: Sequence[NDArray[Any]], places: Ints, name: str) -> NDArray[A
     tail = (max(array.shape[1] for array in arrays), *first.shape[2:]) if first.ndim > 1 else ()
     filler = -1 if name == "ids" else np.nan if kind.kind == "f" else 0
     same = all(array.shape[1:] == tail for array in arrays)
-    found = np.empty((len(places), *tail), dtype=kind) if same else np.full((len(places), *tail), filler, dtype=kind)
+    place = np.empty((len(places), *tail), dtype=kind) if same else np.full((len(places), *tail), filler, dtype=kind)
     begin = 0
     for array in arrays:
         here = places[begin : begin + len(array)]
         if same:
-            found[here] = array
+            place[here] = array
         else:
-            found[here, : array.shape[1]] = array
+            place[here, : array.shape[1]] = array
         begin += len(array)
-    return found
+    return place

@@ -54,11 +54,11 @@ def pose_activities(
     """
     if not np.any(state.blend[:, FIRST_POSE:] > 1e-3):
         return posture
-    found = Posture(posture.rotation.copy(), posture.position.copy())
+    result = Posture(posture.rotation.copy(), posture.position.copy())
     measures = people.measures
     for i in np.flatnonzero(np.max(state.blend[:, FIRST_POSE:], axis=1) > 1e-3):
         body = Bones(
-            found.rotation[i], found.position[i], measures.head[i], measures.frame[i], float(state.yaw[i]),
+            result.rotation[i], result.position[i], measures.head[i], measures.frame[i], float(state.yaw[i]),
             float(people.height[i]),
         )  # fmt: skip
         # waving comes last, as it takes the hand along a way from where the others have it
@@ -76,7 +76,7 @@ def pose_activities(
                 _run(body, _sole(people, i), float(state.phase[i]), share * min(max(pace, 0.0), 1.0))
             else:
                 _pose_one(body, ACTIVITIES[k], share, state, int(i), (targets or {}).get(int(i)))
-    return found
+    return result
 
 
 def _pose_one(body: Bones, name: str, share: float, state: Gaits, i: int, target: Floats | None) -> None:

@@ -128,7 +128,7 @@ def persons() -> tuple[Person, ...]:
     >>> len(everyone), everyone[0].name, everyone[-1].name, sum(p.sex == "f" and p.years >= 18 for p in everyone)
     (45, 'man-20', 'mannequin', 20)
     """
-    found = [
+    people = [
         Person(
             name=f"{WORD[row['sex'], row['years'] >= 18]}-{row['years']:02d}",
             sex=row["sex"],
@@ -139,9 +139,9 @@ def persons() -> tuple[Person, ...]:
         )
         for i, row in enumerate(shapes().people)
     ]
-    adults = [p for p in found if p.years >= 18]
+    adults = [p for p in people if p.years >= 18]
     mean = [float(np.mean([getattr(p, field) for p in adults])) for field in ("height", "mass")]
-    return (*found, Person("mannequin", "", 0, mean[0], mean[1], len(found)))
+    return (*people, Person("mannequin", "", 0, mean[0], mean[1], len(people)))
 
 
 def names() -> tuple[str, ...]:

@@ -91,7 +91,7 @@ def eye_offsets(people: People) -> Floats:
 @kernel
 def _highest_pelvis(head: Floats, feet: Floats, reach: float, R: Floats, P: Floats) -> float:
     """Return the largest height of the pelvis [m] at which both legs reach their feet."""
-    found = 1e9
+    highest_pelvis = 1e9
     for f in range(2):
         b = 20 + 4 * f
         hip = np.zeros(3)
@@ -100,8 +100,8 @@ def _highest_pelvis(head: Floats, feet: Floats, reach: float, R: Floats, P: Floa
                 hip[r] += R[0, r, c] * (head[b, c] - head[0, c])
         dx, dy = P[0, 0] + hip[0] - feet[f, 0], P[0, 1] + hip[1] - feet[f, 1]
         tall = math.sqrt(max(reach * reach - dx * dx - dy * dy, 0.25 * reach * reach))
-        found = min(found, feet[f, 2] + tall - hip[2])
-    return found
+        highest_pelvis = min(highest_pelvis, feet[f, 2] + tall - hip[2])
+    return highest_pelvis
 
 
 @kernel
@@ -298,13 +298,13 @@ def reach_poses(posture: Posture, people: People, poses: Mapping[int, Floats]) -
     [0.35, -0.2, 1.6]
     """
     body, parents, eyes = people.measures, shapes().parents, eye_offsets(people)
-    found = Posture(posture.rotation.copy(), posture.position.copy())
+    result = Posture(posture.rotation.copy(), posture.position.copy())
     for k, row in poses.items():
         if all(np.isnan(row[first]) for first, _ in PARTS.values()):
             continue
         lengths = np.array([body.thigh[k], body.shank[k], body.arm[k, 0], body.arm[k, 1], body.height[k]])
         eye, hands = eyes[k], people.rows.hands[people.body[k]]
         _reach(
-            row, eye, hands, lengths, body.head[k], body.frame[k], parents, found.rotation[k], found.position[k]
+            row, eye, hands, lengths, body.head[k], body.frame[k], parents, result.rotation[k], result.position[k]
         )  # fmt: skip
-    return found
+    return result

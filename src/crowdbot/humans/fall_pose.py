@@ -69,7 +69,7 @@ def blend_fall_poses(before: FallPose | None, after: FallPose | None, share: flo
     kind = before if after is None or (before is not None and before.down and not after.down) else after
     if kind is None:
         raise ValueError("one of two poses must be of a person out of balance")
-    first, last = (0.0 if one is None else one.tilt for one in (before, after))
+    first, last = (0.0 if item is None else item.tilt for item in (before, after))
     direction = kind.direction
     if before is not None and after is not None and before.down == after.down:
         turn = after.direction - before.direction
@@ -232,7 +232,7 @@ def fall_postures(posture: Posture, people: People, yaw: Floats, poses: Mapping[
     (True, True, True)
     """
     body, parents = people.measures, shapes().parents
-    found = Posture(posture.rotation.copy(), posture.position.copy())
+    result = Posture(posture.rotation.copy(), posture.position.copy())
     for i, pose in poses.items():
         grown = min(max((pose.tilt - pose.start) / BLEND, 0.0), 1.0)
         share = grown * grown * (3.0 - 2.0 * grown)
@@ -241,11 +241,11 @@ def fall_postures(posture: Posture, people: People, yaw: Floats, poses: Mapping[
         rolled = roll_onto(pose)
         _write_pose(
             joint_angles(pose), float(yaw[i]) + rolled, pose.direction - rolled, pose.tilt, shares, body.frame[i],
-            body.head[i], parents, found.rotation[i], found.position[i],
+            body.head[i], parents, result.rotation[i], result.position[i],
         )  # fmt: skip
     down = [i for i, pose in poses.items() if pose.down]
     if down:
-        limbs = people.limbs(found)
+        limbs = people.limbs(result)
         low = np.minimum(limbs.start[down, :, 2], limbs.end[down, :, 2]) - limbs.radius[down]
-        found.position[down, :, 2] -= low.min(axis=1)[:, None]
-    return found
+        result.position[down, :, 2] -= low.min(axis=1)[:, None]
+    return result

@@ -83,7 +83,7 @@ def seat_rows(seat: Seat | Sequence[Seat], count: int) -> Floats:
     seats = [seat] * count if isinstance(seat, Seat) else list(seat)
     if len(seats) != count:
         raise InputError(f"Gait: {len(seats)} seats are given for {count} people; give one, or one for each")
-    return np.array([one.row for one in seats], dtype=np.float64).reshape(count, 12)
+    return np.array([seat.row for seat in seats], dtype=np.float64).reshape(count, 12)
 
 
 FASTEST = 12.0

@@ -126,7 +126,7 @@ class People:
         if isinstance(names, str):
             raise InputError(f"People.of takes a list of names, as [{names!r}], not the text {names!r}")
         first = len(persons())
-        extra = {one.name: Person(one.name, "", 0, one.height, one.mass, first + k) for k, one in enumerate(own)}
+        extra = {item.name: Person(item.name, "", 0, item.height, item.mass, first + k) for k, item in enumerate(own)}
         found = tuple(extra[name] if name in extra else person(name) for name in names)
         usual = np.array([p.height for p in found], dtype=np.float64)
         tall = usual if height is None else _per_person("height", height, len(found))
@@ -244,15 +244,15 @@ class People:
         if not self.own:
             common = mesh.included
             return self._skin(whole, SkinnedMesh(common.rest, common.bones, common.weights), posture)
-        found = np.zeros((len(whole), mesh.points[-1], 3))
+        result = np.zeros((len(whole), mesh.points[-1], 3))
         for k in range(-1, len(self.own)):
             rows = np.flatnonzero(self.own_body[whole] == k)
             own = mesh.included if k < 0 else self.own[k].levels[level]
             rest = own.rest if k < 0 else own.rest[None]
             if len(rows):
                 skinned = SkinnedMesh(rest, own.bones, own.weights)
-                found[rows, mesh.vertex_span(k)] = self._skin(whole[rows], skinned, posture)
-        return found
+                result[rows, mesh.vertex_span(k)] = self._skin(whole[rows], skinned, posture)
+        return result
 
     def _skin(self, rows: Ints, mesh: SkinnedMesh, posture: Posture) -> Floats:
         body = self.body[rows] if len(mesh.rest) > 1 else np.zeros(len(rows), dtype=np.int64)
@@ -274,30 +274,30 @@ class People:
     def clothing_mask(self, level: int = 2) -> NDArray[np.bool_]:
         """Return the mask ``[N, F]`` of triangles of the skin and of clothes that the person wears."""
         mesh = self.mesh(level)
-        found = np.zeros((len(self), mesh.triangles[-1]), dtype=np.bool_)
+        result = np.zeros((len(self), mesh.triangles[-1]), dtype=np.bool_)
         for k, (worn, own) in enumerate(zip(self.outfits, self.own_body.tolist(), strict=True)):
-            found[k, mesh.face_span(own)] = True if own >= 0 else np.isin(mesh.included.face_part, worn_parts(worn))
-        return found
+            result[k, mesh.face_span(own)] = True if own >= 0 else np.isin(mesh.included.face_part, worn_parts(worn))
+        return result
 
     def face_colors(self, level: int = 2) -> Floats:
         """Return the colour ``[N, F, 3]`` of each triangle: red, green, blue from 0 to 1."""
         mesh = self.mesh(level)
-        found = np.zeros((len(self), mesh.triangles[-1], 3))
+        result = np.zeros((len(self), mesh.triangles[-1], 3))
         for k, worn in enumerate(self.outfits):
-            found[k, mesh.face_span(-1)] = region_colors(worn)[mesh.included.face_region]
+            result[k, mesh.face_span(-1)] = region_colors(worn)[mesh.included.face_region]
         for k, body in enumerate(self.own):
-            found[:, mesh.face_span(k)] = body.face_colors(level)
-        return found
+            result[:, mesh.face_span(k)] = body.face_colors(level)
+        return result
 
     def vertex_colors(self, level: int = 2) -> Floats:
         """Return the colour ``[N, V, 3]`` of each vertex; :meth:`face_colors` has sharper edges of clothes."""
         mesh = self.mesh(level)
-        found = np.zeros((len(self), mesh.points[-1], 3))
+        result = np.zeros((len(self), mesh.points[-1], 3))
         for k, worn in enumerate(self.outfits):
-            found[k, mesh.vertex_span(-1)] = region_colors(worn)[mesh.included.vertex_region]
+            result[k, mesh.vertex_span(-1)] = region_colors(worn)[mesh.included.vertex_region]
         for k, body in enumerate(self.own):
-            found[:, mesh.vertex_span(k)][:, body.levels[level].faces] = body.face_colors(level)[:, None]
-        return found
+            result[:, mesh.vertex_span(k)][:, body.levels[level].faces] = body.face_colors(level)[:, None]
+        return result
 
 
 def _level(level: int) -> int:

@@ -127,7 +127,7 @@ def _energy_of(middle: Floats, found: Floats, expected: Floats, seed: int) -> In
     low, high = percentile_interval(ratios)  # NaN where nothing is expected in a draw
     exponent, strength, offset = fit_interaction_energy(middle, g, count)
     fits = [fit_interaction_energy(middle, *draw)[0] for draw in zip(ratios, counts, strict=True)]
-    known = np.asarray([one for one in fits if not np.isnan(one)])
+    known = np.asarray([fit for fit in fits if not np.isnan(fit)])
     sure = not np.isnan(exponent) and len(known) >= 0.9 * RESAMPLES
     ends = percentile_interval(known) if sure else (np.nan, np.nan)
     near = (middle >= FIT_RANGE[0]) & (middle <= FIT_RANGE[1]) & (count >= FEWEST)
@@ -167,7 +167,7 @@ def fit_interaction_energy(
     >>> round(n, 2), round(k, 2), round(c, 2)
     (2.0, 0.8, 0.1)
     """
-    tau, ratio, number = (np.asarray(one, dtype=np.float64) for one in (ttc, g, count))
+    tau, ratio, number = (np.asarray(item, dtype=np.float64) for item in (ttc, g, count))
     if not tau.shape == ratio.shape == number.shape or tau.ndim != 1:
         raise InputError("times to collision, g and counts must be columns of equal length")
     used = (tau >= ends[0]) & (tau <= ends[1]) & (number >= FEWEST) & (ratio > 0.0)

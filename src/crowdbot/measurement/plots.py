@@ -184,20 +184,24 @@ def _panels(
     return _save(figure, folder / f"{name}.png")
 
 
-def _profile(one: Measurements, name: str, title: str, folder: Path) -> Path:
-    assert one.grid is not None
-    left, right, bottom, top = one.grid.extent
+def _profile(measurements: Measurements, name: str, title: str, folder: Path) -> Path:
+    assert measurements.grid is not None
+    left, right, bottom, top = measurements.grid.extent
     tall = min(8.0, max(2.0, 6.0 * (top - bottom) / (right - left)))
     figure = _figure(7.2, tall + 0.8)
     axis = figure.subplots()
-    values = one.tables["profiles"][name].to_numpy().reshape(one.grid.rows, one.grid.columns)
-    image = axis.imshow(values, extent=one.grid.extent, cmap="viridis", vmin=0.0, interpolation="nearest")
-    for ring in (one.walkable.border, *one.walkable.obstacles):
+    values = measurements.tables["profiles"][name].to_numpy().reshape(measurements.grid.rows, measurements.grid.columns)
+    image = axis.imshow(values, extent=measurements.grid.extent, cmap="viridis", vmin=0.0, interpolation="nearest")
+    for ring in (measurements.walkable.border, *measurements.walkable.obstacles):
         axis.plot(*np.vstack([ring, np.asarray(ring)[:1]]).T, color="black", linewidth=1.0)
-    axis.plot(*np.vstack([one.area.corners, np.asarray(one.area.corners)[:1]]).T, color="white", linewidth=1.0)
-    if one.line is not None:
-        axis.plot(*zip(one.line.start, one.line.end, strict=True), color=COLORS[1], linewidth=1.5)
-    axis.set(xlabel="x [m]", ylabel="y [m]", title=one.name, xlim=(left, right), ylim=(bottom, top))
+    axis.plot(
+        *np.vstack([measurements.area.corners, np.asarray(measurements.area.corners)[:1]]).T,
+        color="white",
+        linewidth=1.0,
+    )
+    if measurements.line is not None:
+        axis.plot(*zip(measurements.line.start, measurements.line.end, strict=True), color=COLORS[1], linewidth=1.5)
+    axis.set(xlabel="x [m]", ylabel="y [m]", title=measurements.name, xlim=(left, right), ylim=(bottom, top))
     figure.colorbar(image, ax=axis, label=title, shrink=0.9)
     return _save(figure, folder / f"profile-{name}.png")
 

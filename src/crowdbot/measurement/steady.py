@@ -112,7 +112,7 @@ def combine_steady_states(states: Sequence[SteadyState]) -> Floats:
     common = states[0].intervals
     for state in states[1:]:
         both = [(max(a, c), min(b, d)) for a, b in common for c, d in state.intervals]
-        common = np.asarray([one for one in both if one[0] < one[1]], dtype=np.float64).reshape(-1, 2)
+        common = np.asarray([item for item in both if item[0] < item[1]], dtype=np.float64).reshape(-1, 2)
     return common
 
 

@@ -263,10 +263,10 @@ class _Survey:
     def add_individual(self) -> None:
         self.tables["individual"] = self.states[["id", "frame", "time", "x", "y", "density", "speed", "v_x", "v_y"]]
         self.figures["mean_speed"] = self.speed.speed.mean()
-        found = compute_individual_acceleration(self.people, self.step).acceleration.to_numpy()
-        if len(found):
-            self.tables["acceleration"] = distribution(found, 0.1, 0.0, max(0.2, math.ceil(found.max() * 10.0) / 10.0))
-            self.figures["mean_acceleration"] = found.mean()
+        numpy = compute_individual_acceleration(self.people, self.step).acceleration.to_numpy()
+        if len(numpy):
+            self.tables["acceleration"] = distribution(numpy, 0.1, 0.0, max(0.2, math.ceil(numpy.max() * 10.0) / 10.0))
+            self.figures["mean_acceleration"] = numpy.mean()
 
     def add_area(self) -> None:
         import pedpy
@@ -336,9 +336,9 @@ class _Survey:
             individual_voronoi_polygons=self.cells, measurement_line=pedpy.MeasurementLine(line.line),
             trajectory_data=pedpy_tracks(people), frame_step=self.step // people.frame_step,
         )  # fmt: skip
-        found = compute_line_flow(self.sample, self.cells, line, self.speed, species)
-        self.tables["line"] = found.assign(time=(found.frame - people.frame[0]) / people.fps)
-        self.figures["line_flow"] = found.flow.mean()
+        line_flow = compute_line_flow(self.sample, self.cells, line, self.speed, species)
+        self.tables["line"] = line_flow.assign(time=(line_flow.frame - people.frame[0]) / people.fps)
+        self.figures["line_flow"] = line_flow.flow.mean()
 
     def add_passing(self) -> None:
         import pedpy

@@ -99,13 +99,13 @@ def contact_messages(make: Messages, now: int, frame: Any, names: Mapping[int, s
         who = ids[number] if kind in ("robot", "person") else number
         return {"robot": names.get(who, str(who)), "person": str(who), "wall": "wall"}.get(kind, f"{kind} {number}")
 
-    forces = [_force(make, one, called) for one in getattr(frame, "forces", ())]
+    forces = [_force(make, item, called) for item in getattr(frame, "forces", ())]
     if forces:
         yield FORCES, make.make("crowdbot_msgs/msg/Forces", header=make.header(now), forces=forces)
-    collisions = [_collision(make, one, called) for one in getattr(frame, "collisions", ())]
+    collisions = [_collision(make, item, called) for item in getattr(frame, "collisions", ())]
     if collisions:
         yield COLLISIONS, make.make("crowdbot_msgs/msg/Collisions", header=make.header(now), collisions=collisions)
-    falls = [_fall(make, one, called) for one in getattr(frame, "falls", ())]
+    falls = [_fall(make, item, called) for item in getattr(frame, "falls", ())]
     if falls:
         yield FALLS, make.make("crowdbot_msgs/msg/Falls", header=make.header(now), falls=falls)
 
@@ -146,24 +146,25 @@ def _fall(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
 
 def read_falls(message: Any) -> list[FallRecord]:
     """Return the falls of a message."""
-    return [FallRecord(*(getattr(one, name) for name in FallRecord._fields)) for one in message.falls]
+    return [FallRecord(*(getattr(fall, name) for name in FallRecord._fields)) for fall in message.falls]
 
 
 def read_forces(time: float, message: Any) -> list[ContactForceRecord]:
     """Return the forces of a message."""
     return [
         ContactForceRecord(
-            time, one.first, one.second, one.first_part, one.limb, one.part, one.force,
-            (one.vector.x, one.vector.y, one.vector.z), one.depth, (one.point.x, one.point.y, one.point.z),
+            time, force.first, force.second, force.first_part, force.limb, force.part, force.force,
+            (force.vector.x, force.vector.y, force.vector.z), force.depth, (force.point.x, force.point.y, force.point.z),
         )
-        for one in message.forces
+        for force in message.forces
     ]  # fmt: skip
 
 
 def read_contact_events(message: Any) -> list[ContactEventRecord]:
     """Return the contact events of a message."""
     return [
-        ContactEventRecord(*(getattr(one, name) for name in ContactEventRecord._fields)) for one in message.collisions
+        ContactEventRecord(*(getattr(collision, name) for name in ContactEventRecord._fields))
+        for collision in message.collisions
     ]
 
 
@@ -199,11 +200,11 @@ def read_fall_poses(message: Any) -> dict[int, FallPose]:
     Raises:
         ValueError: an angle is not possible.
     """
-    found = {}
-    for one in message.poses:
-        flags = bool(one.struck), bool(one.down), bool(one.rising)
-        pose = FallPose(float(one.direction), float(one.tilt), float(one.start), *flags)
+    fall_poses = {}
+    for item in message.poses:
+        flags = bool(item.struck), bool(item.down), bool(item.rising)
+        pose = FallPose(float(item.direction), float(item.tilt), float(item.start), *flags)
         if not (math.isfinite(pose.direction) and 0.0 <= pose.tilt <= WIDEST and 0.0 <= pose.start <= WIDEST):
-            raise ValueError(f"person {one.person} has an impossible pose {tuple(pose)}")
-        found[int(one.person)] = pose
-    return found
+            raise ValueError(f"person {item.person} has an impossible pose {tuple(pose)}")
+        fall_poses[int(item.person)] = pose
+    return fall_poses

@@ -75,15 +75,15 @@ class Ros1Messages:
             if node == Nodetype.NAME:
                 inner = self._convert(inner, detail)
             elif node != Nodetype.BASE and detail[0][0] == Nodetype.NAME:
-                inner = [self._convert(one, detail[0][1]) for one in inner]
+                inner = [self._convert(item, detail[0][1]) for item in inner]
             fields[name] = inner
         return self.store.types[kind](**fields)
 
 
 @functools.cache
 def _definition(kind: str) -> tuple[str, str]:
-    found: tuple[str, str] = _store().generate_msgdef(kind, ros_version=1)
-    return found
+    definition: tuple[str, str] = _store().generate_msgdef(kind, ros_version=1)
+    return definition
 
 
 @functools.cache

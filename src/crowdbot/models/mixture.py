@@ -128,8 +128,8 @@ def _memory(scene: Scene, after: Sequence[Scene], own: Ints) -> dict[str, Floats
     """Return the memory of all models; if several models write the same name, the agent's own model takes priority."""
     memory = dict(scene.memory)
     written: set[str] = set()
-    for k, one in enumerate(after):
-        for name, value in one.memory.items():
+    for k, item in enumerate(after):
+        for name, value in item.memory.items():
             if value is scene.memory.get(name):
                 continue
             mine = (own == k).reshape(*own.shape, *[1] * (value.ndim - 2))

@@ -61,8 +61,8 @@ def crowd_presets() -> Mapping[str, CrowdPreset]:
     'collision-free-speed'
     """
     folder = importlib.resources.files("crowdbot").joinpath("assets", "presets")
-    files = sorted((one for one in folder.iterdir() if one.name.endswith(".json")), key=lambda one: one.name)
-    found = (_preset(json.loads(one.read_text(encoding="utf-8"))) for one in files)
+    files = sorted((item for item in folder.iterdir() if item.name.endswith(".json")), key=lambda one: one.name)
+    found = (_preset(json.loads(file.read_text(encoding="utf-8"))) for file in files)
     return {preset.key: preset for preset in found}
 
 
@@ -78,8 +78,8 @@ def _preset_class(name: str) -> type[CrowdModel]:
     fields = []
     for owner in (HeadwayLayer, kind):
         hints = typing.get_type_hints(owner)
-        for one in dataclasses.fields(owner):
-            fields.append((one.name, hints[one.name], _field(one, preset)))
+        for field in dataclasses.fields(owner):
+            fields.append((field.name, hints[field.name], _field(field, preset)))
     doc = (
         f"{preset.about}\n\nPreset of {preset.model} with the headway layer. {preset.method}\n\n"
         f"Args:\n{arguments_of(HeadwayLayer)}\n{arguments_of(kind)}"

@@ -69,5 +69,5 @@ def _predict(predictor: Predictor, past: Windows, samples: int) -> Forecast:
     return forecast
 
 
-def _same(one: Forecast, other: Forecast) -> bool:
-    return np.array_equal(one.position, other.position) and np.array_equal(one.weight, other.weight)
+def _same(forecast: Forecast, other: Forecast) -> bool:
+    return np.array_equal(forecast.position, other.position) and np.array_equal(forecast.weight, other.weight)

@@ -52,13 +52,13 @@ def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float
 
 def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -> Floats:
     """Return draws ``[W, K, T, A, 2]`` [m], permuted within blocks of ``block`` draws to reduce collisions."""
-    found = place.copy()
+    result = place.copy()
     for window, who in _members(past):
         for first in range(0, place.shape[1], block):
             part = slice(first, first + block)
             choice = _choice(past, place[:, part], window, who, contact, 0.0)
-            found[window, part][:, :, who] = _reorder(place[window, part][:, :, who], choice)
-    return found
+            result[window, part][:, :, who] = _reorder(place[window, part][:, :, who], choice)
+    return result
 
 
 def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
@@ -131,11 +131,11 @@ def _rooms(past: Windows, window: int, who: NDArray[np.int64], contact: float) -
 
 def _members(past: Windows) -> list[tuple[int, NDArray[np.int64]]]:
     """Return the slots of the agents in each window, sorted by id: results do not depend on the order of slots."""
-    found = []
+    members = []
     for window in range(len(past)):
         who = np.flatnonzero(past.present[window, -1])
-        found.append((window, who[np.argsort(past.id[window, who], kind="stable")]))
-    return found
+        members.append((window, who[np.argsort(past.id[window, who], kind="stable")]))
+    return members
 
 
 def _choice(

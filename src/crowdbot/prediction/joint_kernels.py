@@ -43,12 +43,12 @@ def _disjoint(one: Floats, other: Floats) -> bool:  # pragma: no cover - compile
 def _longest_steps(path: Floats) -> Floats:  # pragma: no cover - compiled
     """Return ``[N]``: the longest step [m] of each path ``[N, T, 2]``."""
     N, T, _ = path.shape
-    found = np.zeros(N)
+    longest_steps = np.zeros(N)
     for n in range(N):
         for t in range(1, T):
             dx, dy = path[n, t, 0] - path[n, t - 1, 0], path[n, t, 1] - path[n, t - 1, 1]
-            found[n] = max(found[n], math.sqrt(dx * dx + dy * dy))
-    return found
+            longest_steps[n] = max(longest_steps[n], math.sqrt(dx * dx + dy * dy))
+    return longest_steps
 
 
 @kernel
@@ -69,7 +69,7 @@ def _find_collisions(
 ) -> bool:  # pragma: no cover - compiled
     """Write the collision matrix ``[K, K]`` of the futures of two people; return whether any pair collides."""
     K, T = path.shape[1], path.shape[2]
-    found = False
+    collisions = False
     for k in range(K):
         for j in range(K):
             hit[k, j] = False
@@ -79,9 +79,9 @@ def _find_collisions(
                 dx, dy = path[a, k, t, 0] - path[b, j, t, 0], path[a, k, t, 1] - path[b, j, t, 1]
                 if dx * dx + dy * dy < limit * limit:
                     hit[k, j] = True
-                    found = True
+                    collisions = True
                     break
-    return found
+    return collisions
 
 
 @kernel
@@ -247,7 +247,7 @@ def first_crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> I
     The segments connect ``one [M, 2]`` and ``other [M, 2]`` [m].
     """
     N, K, T, _ = path.shape
-    found = np.full((N, K), T, dtype=np.int64)
+    result = np.full((N, K), T, dtype=np.int64)
     for n in range(N):
         for k in range(K):
             x, y = start[n, 0], start[n, 1]
@@ -262,9 +262,9 @@ def first_crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> I
                     side_3 = (u - x) * (ay - y) - (v - y) * (ax - x)
                     side_4 = (u - x) * (by - y) - (v - y) * (bx - x)
                     if side_1 * side_2 < 0.0 and side_3 * side_4 < 0.0:
-                        found[n, k] = t
+                        result[n, k] = t
                         break
-                if found[n, k] < T:
+                if result[n, k] < T:
                     break
                 x, y = u, v
-    return found
+    return result

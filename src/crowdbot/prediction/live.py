@@ -156,9 +156,9 @@ class Live:
             labels = self._history.labels(self._history.numbers())
         if all(isinstance(label, int) for label in labels):
             return np.array(labels, dtype=np.int64)
-        found = np.empty(len(labels), dtype=object)
-        found[:] = labels
-        return found
+        result = np.empty(len(labels), dtype=object)
+        result[:] = labels
+        return result
 
     def update(
         self, ids: Iterable[Hashable], position: ArrayLike, robots: Iterable[Hashable] = (), time: float | None = None,

@@ -150,17 +150,17 @@ def read_weights(path: Path) -> Numbers:
     """
     try:
         with path.open("rb") as handle, np.load(handle, allow_pickle=False) as file:
-            found = {name: file[name].astype(np.float64) for name in file.files}
+            numbers = {name: file[name].astype(np.float64) for name in file.files}
     except FileNotFoundError:
         raise DataError(f"{path} does not exist") from None
     except Exception as error:  # numpy raises anything at damaged files: zipfile, zlib, ValueError, KeyError, EOFError
         raise DataError(f"{path} is not a file of weights, or is damaged: {error}") from None
-    bad = [name for name, values in found.items() if not np.all(np.isfinite(values))]
+    bad = [name for name, values in numbers.items() if not np.all(np.isfinite(values))]
     if bad:
         raise DataError(f"{path}: {bad[0]} has values that are not finite; the file is damaged")
-    for values in found.values():
+    for values in numbers.values():
         values.setflags(write=False)
-    return found
+    return numbers
 
 
 def incompatibility(past: Windows) -> str:

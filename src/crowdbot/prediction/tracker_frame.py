@@ -81,7 +81,7 @@ def _checked_labels(ids: Iterable[Hashable], name: str) -> list[Hashable]:
     if ndim != 1:
         raise InputError(f"live: {name} have shape {list(ids.shape)}, they must be [N]; flatten them")  # type: ignore[attr-defined]
     labels = ids.tolist() if isinstance(ids, np.ndarray) else list(ids)
-    return labels if all(type(label) is int for label in labels) else [_checked_label(one, name) for one in labels]
+    return labels if all(type(label) is int for label in labels) else [_checked_label(label, name) for label in labels]
 
 
 def _checked_label(label: Hashable, name: str) -> Hashable:
@@ -187,14 +187,14 @@ def _checked_radii(radii: ArrayLike | None, labels: list[Hashable]) -> Floats:
     Raises:
         InputError: the shape is wrong, or a radius is not above 0 and finite.
     """
-    found = _numbers(radii, labels, "radii", "radius [m]", np.nan)
-    wrong = ~np.isnan(found) & ~((found > 0.0) & (found < np.inf))
+    numbers = _numbers(radii, labels, "radii", "radius [m]", np.nan)
+    wrong = ~np.isnan(numbers) & ~((numbers > 0.0) & (numbers < np.inf))
     if wrong.any():
         bad = int(np.argmax(wrong))
         raise InputError(
-            f"live: radius {found[bad]} m of {labels[bad]!r} must be above 0 and finite, or NaN if it is unknown"
+            f"live: radius {numbers[bad]} m of {labels[bad]!r} must be above 0 and finite, or NaN if it is unknown"
         )
-    return found
+    return numbers
 
 
 def _checked_existence(existence: ArrayLike | None, labels: list[Hashable]) -> Floats:
@@ -203,16 +203,16 @@ def _checked_existence(existence: ArrayLike | None, labels: list[Hashable]) -> F
     Raises:
         InputError: the shape is wrong, or a probability is not above 0 and at most 1.
     """
-    found = _numbers(existence, labels, "existence", "probability", 1.0)
-    found = np.where(np.isnan(found), 1.0, found)
-    wrong = ~((found > 0.0) & (found <= 1.0))
+    numbers = _numbers(existence, labels, "existence", "probability", 1.0)
+    numbers = np.where(np.isnan(numbers), 1.0, numbers)
+    wrong = ~((numbers > 0.0) & (numbers <= 1.0))
     if wrong.any():
         bad = int(np.argmax(wrong))
         raise InputError(
-            f"live: existence {found[bad]} of {labels[bad]!r} must be above 0 and at most 1; leave people who do not"
+            f"live: existence {numbers[bad]} of {labels[bad]!r} must be above 0 and at most 1; leave people who do not"
             " exist out of the frame"
         )
-    return found
+    return numbers
 
 
 def _numbers(values: ArrayLike | None, labels: list[Hashable], name: str, what: str, unknown: float) -> Floats:
@@ -220,9 +220,9 @@ def _numbers(values: ArrayLike | None, labels: list[Hashable], name: str, what: 
     if values is None:
         return np.full(len(labels), unknown)
     try:
-        found = np.array(values, dtype=float)
+        numbers = np.array(values, dtype=float)
     except (TypeError, ValueError):
         raise InputError(f"live: {name} must be numbers [N], the {what} of each identity") from None
-    if found.shape != (len(labels),):
-        raise InputError(f"live: {name} have shape {list(found.shape)}, they must be [{len(labels)}]")
-    return found
+    if numbers.shape != (len(labels),):
+        raise InputError(f"live: {name} have shape {list(numbers.shape)}, they must be [{len(labels)}]")
+    return numbers

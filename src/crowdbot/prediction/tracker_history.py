@@ -153,9 +153,9 @@ class TrackerHistory:
         Raises:
             InputError: the identity, which is not an integer, is unknown.
         """
-        found = self._numbers.get(label)
-        if found is not None:
-            return found
+        result = self._numbers.get(label)
+        if result is not None:
+            return result
         if isinstance(label, int | np.integer):
             return int(label)
         raise InputError(
@@ -209,13 +209,13 @@ class TrackerHistory:
         return self._rows[-1].time + self.dt if self._rows else 0.0
 
     def _number(self, label: Hashable) -> int:
-        found = self._numbers.get(label)
-        if found is None:
+        number = self._numbers.get(label)
+        if number is None:
             plain = isinstance(label, int) and 0 <= label < FIRST_NUMBER
-            found = int(label) if plain else self._next  # type: ignore[call-overload]
+            number = int(label) if plain else self._next  # type: ignore[call-overload]
             self._next += 0 if plain else 1
-            self._numbers[label], self._labels[found] = found, label
-        return found
+            self._numbers[label], self._labels[number] = number, label
+        return number
 
     def _forget(self) -> None:
         """Drop rows and identities that can no longer count."""

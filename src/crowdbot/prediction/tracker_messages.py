@@ -77,7 +77,7 @@ class TrackerMessages:
         return self._completed()
 
     def _completed(self) -> list[TrackerFrame]:
-        found = []
+        tracker_frames = []
         while self._waiting:
             people = self._waiting[0]
             try:
@@ -87,7 +87,7 @@ class TrackerMessages:
                 raise
             if frame is None:
                 break
-            found.append(frame)
+            tracker_frames.append(frame)
             self._waiting.popleft()
         if len(self._waiting) > QUEUE:
             people = self._waiting.popleft()
@@ -96,7 +96,7 @@ class TrackerMessages:
                 f" {people.stamp / SECOND:.3f} s, and {QUEUE} messages wait; the clocks of tracker and odometry differ,"
                 " or odometry has stopped"
             )
-        return found
+        return tracker_frames
 
     def _frame(self, people: _People) -> TrackerFrame | None:
         """Return the frame of a message, or None if a transform of its stamp may still come.

@@ -111,8 +111,8 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
     if stage.map:
         for name, path in map_files(stage.map, stage.folder, stage.trust).items():
             found[name] = DATA, path
-    for one in trial.recorded:
-        for name, path in recording_files(one.data, one.folder, one.trust).items():
+    for item in trial.recorded:
+        for name, path in recording_files(item.data, item.folder, item.trust).items():
             found[name] = DATA, path
     for thing in _parts(trial):
         if hasattr(thing, "files"):
@@ -135,8 +135,8 @@ def _parts(thing: Any) -> Iterator[Any]:
         elif part.role == "child" and value is not None:
             yield from _parts(value)
         elif part.role == "children":
-            for one in part.into.spread(value) if part.into else value:
-                yield from _parts(one)
+            for item in part.into.spread(value) if part.into else value:
+                yield from _parts(item)
 
 
 def collect_attachments(trials: Iterable[Trial]) -> list[tuple[AttachedFile, Path]]:
@@ -290,18 +290,18 @@ def _content(path: Path, own: Path, row: AttachedFile, inside: Mapping[str, byte
 
 def _attached(path: Path) -> dict[str, bytes]:
     """Return the files in an episode, which precede its messages."""
-    found = {}
+    result = {}
     try:
         with path.open("rb") as stream:
             for kind, _, body in McapReader(stream).records():
                 if kind == McapOpcode.ATTACHMENT:
                     name, data = read_attachment(body)
-                    found[name] = data
+                    result[name] = data
                 elif kind == McapOpcode.CHUNK:
                     break
     except McapError as error:
         raise EpisodeError(f"{path} is damaged: {error}") from None
-    return found
+    return result
 
 
 def _is_inside(name: str) -> bool:

@@ -287,7 +287,7 @@ def _bodies(path: Path) -> dict[str, tuple[int, float]]:
 
     try:
         robots = json.loads(read_metadata(path)["robots"])
-        return {one["name"]: (int(one["id"]), float(one["radius"])) for one in robots}
+        return {robot["name"]: (int(robot["id"]), float(robot["radius"])) for robot in robots}
     except (ValueError, KeyError, TypeError) as error:
         raise EpisodeError(f"{path} has an invalid list of robots: {error}") from None
 

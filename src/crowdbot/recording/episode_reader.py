@@ -155,18 +155,23 @@ class RecordedEpisode:
         """One row for each person, see :attr:`crowdbot.simulation.Episode.people`."""
         known = self._robot_records
         robots = [
-            TableRobot(k, str(one["name"]), bool(one.get("ghost"))) for k, one in zip(self.robots, known, strict=True)
+            TableRobot(k, str(item["name"]), bool(item.get("ghost")))
+            for k, item in zip(self.robots, known, strict=True)
         ]
         names, impacts = {robot.name for robot in robots}, None
         if self.metadata.get("world") == "physics":
-            hits = [one for one in self.collisions if one.first in names and one.region and one.second.isdecimal()]
-            impacts = [PersonImpact(int(one.second), one.peak_force, one.severity) for one in hits]
+            hits = [
+                collision
+                for collision in self.collisions
+                if collision.first in names and collision.region and collision.second.isdecimal()
+            ]
+            impacts = [PersonImpact(int(hit.second), hit.peak_force, hit.severity) for hit in hits]
         return people_table(log_of(self), robots, impacts)
 
     @property
     def footprints(self) -> tuple[Floats | None, ...]:
         """Outline ``[N, 2]`` [m] of each robot in its own frame; None for a disc."""
-        shapes = [one.get("footprint") for one in self._robot_records]
+        shapes = [robot_record.get("footprint") for robot_record in self._robot_records]
         return tuple(None if shape is None else np.array(shape, dtype=np.float64) for shape in shapes)
 
     @property

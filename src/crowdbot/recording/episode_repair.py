@@ -32,24 +32,24 @@ class EpisodeEnd:
         self.robots = json.loads(known["robots"])
         rings = [np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])]
         walls = Walls.of(rings).segments()
-        ghosts = [int(one["id"]) for one in self.robots if one.get("ghost")]
+        ghosts = [int(robot["id"]) for robot in self.robots if robot.get("ghost")]
         self.impacts: list[ContactEventRecord] = []
         self.falls: list[FallRecord] = []
         self.balanced = known.get("balance") == "true"
         self.travels = [
             NavigationMetrics(
-                int(one["id"]),
-                float(one["radius"]),
-                (one["goal"][0], one["goal"][1]),
-                float(one["tolerance"]),
+                int(robot["id"]),
+                float(robot["radius"]),
+                (robot["goal"][0], robot["goal"][1]),
+                float(robot["tolerance"]),
                 walls=walls,
-                ghost=bool(one.get("ghost")),
-                outline=outline_of(one["footprint"]) if one.get("footprint") else None,
-                ignored=[ghost for ghost in ghosts if ghost != int(one["id"])],
+                ghost=bool(robot.get("ghost")),
+                outline=outline_of(robot["footprint"]) if robot.get("footprint") else None,
+                ignored=[ghost for ghost in ghosts if ghost != int(robot["id"])],
             )
-            for one in self.robots
+            for robot in self.robots
         ]
-        self.bodies = {one["name"]: (int(one["id"]), float(one["radius"])) for one in self.robots}
+        self.bodies = {robot["name"]: (int(robot["id"]), float(robot["radius"])) for robot in self.robots}
         self.count = 1 + max([-1, *(travel.robot for travel in self.travels)])
         self.last: RecordedStep | None = None
         self.touching: set[int] = set()
@@ -57,10 +57,12 @@ class EpisodeEnd:
     def take(self, moment: RecordedStep) -> None:
         """Add a step."""
         self.count = max(self.count, *(1 + who for who in moment.largest_ids()), 0)
-        names = {name for one in moment.contacts for name in (one.robot, one.other)}
+        names = {name for contact in moment.contacts for name in (contact.robot, contact.other)}
         self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
         self.falls += moment.falls
-        self.impacts += [one for one in moment.collisions if one.first in self.bodies and one.region]
+        self.impacts += [
+            collision for collision in moment.collisions if collision.first in self.bodies and collision.region
+        ]
         if moment.people is not None:
             self.last = moment
             if self.travels:
@@ -74,12 +76,12 @@ class EpisodeEnd:
     def metadata(self) -> dict[str, str]:
         """Return the end metadata."""
         assert self.last is not None
-        names = [one["name"] for one in self.robots]
+        names = [robot["name"] for robot in self.robots]
         metrics = robot_metrics(self.travels, names, "interrupted")
         for k, name in enumerate(names if self.known.get("world") == "physics" else ()):
-            values = impact_metrics(one for one in self.impacts if one.first == name)
+            values = impact_metrics(impact for impact in self.impacts if impact.first == name)
             if self.balanced:
-                values |= fall_metrics(self.falls, [one for one in self.falls if one.cause == name])
+                values |= fall_metrics(self.falls, [fall for fall in self.falls if fall.cause == name])
                 values["max_severity"] = max(values["max_severity"], values["fall_severity"])
             metrics |= {(key if k == 0 else f"{name}.{key}"): value for key, value in values.items()}
         return {

@@ -187,11 +187,11 @@ def _start(
     if begin == 0.0:
         return None
     tick = int(begin * 1e9 + 0.5) // int(known["step_ns"])
-    found = continue_from(path, course, known, tick, comparison)
-    if found is None:
+    simulation = continue_from(path, course, known, tick, comparison)
+    if simulation is None:
         sentence = f"{path} has no keyframe of this version from 0 s to {begin:g} s; {LATE}"
         warnings.warn(sentence, KeyframeWarning, stacklevel=3)
-    return found
+    return simulation
 
 
 def _ended(known: dict[str, str], wanted: dict[int, str]) -> dict[str, str]:

@@ -134,8 +134,8 @@ class Recorder:
         """Write a step."""
         now = frame.nanoseconds
         self._note_added(frame)
-        for one in self.steps.messages(frame):
-            self._put(one.topic, one.kind, one.cdr, now, frame)
+        for message in self.steps.messages(frame):
+            self._put(message.topic, message.kind, message.cdr, now, frame)
         if frame.due:
             self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
             text = self.messages.text(self.last[1])

@@ -131,14 +131,14 @@ def latest_keyframe(
     if any(known.get(name) != now for name, now in versions().items()):
         return None
     places = keyframe_ticks(path) if places is None else places
-    ticks = [one for one in places if one <= tick]
+    ticks = [place for place in places if place <= tick]
     if not ticks:
         return None
-    found = Keyframe(max(ticks), decode_state(_read(path, *places[max(ticks)])))
-    recorded = wanted.get(found.tick * int(known["step_ns"]), "")
-    if recorded != found.digest.hexdigest("interrupted"):
-        raise InputError(f"the keyframe of step {found.tick} differs from the digest of its step")
-    return found
+    keyframe = Keyframe(max(ticks), decode_state(_read(path, *places[max(ticks)])))
+    recorded = wanted.get(keyframe.tick * int(known["step_ns"]), "")
+    if recorded != keyframe.digest.hexdigest("interrupted"):
+        raise InputError(f"the keyframe of step {keyframe.tick} differs from the digest of its step")
+    return keyframe
 
 
 def keyframe_ticks(path: Path) -> dict[int, tuple[int, int]]:
@@ -156,7 +156,7 @@ def keyframe_ticks(path: Path) -> dict[int, tuple[int, int]]:
 
 def _places(stream: BinaryIO) -> dict[int, tuple[int, int]]:
     """Return the places of keyframes, without reading other records."""
-    found: dict[int, tuple[int, int]] = {}
+    places: dict[int, tuple[int, int]] = {}
     place, size = len(MCAP_MAGIC), stream.seek(0, 2)
     while place + 9 <= size:
         stream.seek(place)
@@ -166,9 +166,9 @@ def _places(stream: BinaryIO) -> dict[int, tuple[int, int]]:
         if kind == McapOpcode.ATTACHMENT:
             tick = _tick(stream.read(min(length, HEAD)))
             if tick is not None:
-                found[tick] = (place + 9, length)
+                places[tick] = (place + 9, length)
         place += 9 + length
-    return found
+    return places
 
 
 def _tick(head: bytes) -> int | None:

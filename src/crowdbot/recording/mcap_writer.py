@@ -257,11 +257,11 @@ def _missing_index(stream: BinaryIO, layout: _Layout, end: int) -> bytes:
     """Return the index records of the last chunk that a killed writer has not written, to be put at ``end``."""
     rows: dict[int, list[tuple[int, int]]] = {}
     stream.seek(0)
-    for one in McapReader(stream).messages():
-        if layout.chunks and one.place.record.start == layout.chunks[-1].chunk_start_offset:
-            rows.setdefault(one.place.channel, []).append((one.stamp, one.place.offset))
+    for message in McapReader(stream).messages():
+        if layout.chunks and message.place.record.start == layout.chunks[-1].chunk_start_offset:
+            rows.setdefault(message.place.channel, []).append((message.stamp, message.place.offset))
     added = b""
-    for channel in [one for one in rows if one not in layout.chunks[-1].message_index_offsets]:
+    for channel in [row for row in rows if row not in layout.chunks[-1].message_index_offsets]:
         record = _index_record(channel, rows[channel])
         layout.take(McapOpcode.MESSAGE_INDEX, end + len(added), record[9:])
         added += record

@@ -115,8 +115,8 @@ class Provenance:
         try:
             origin = json.loads(known.get("origin", "[]"))
             rows = [
-                (int(one["tick"]), str(one["trial"]), int(one["seed"]), _orders(one.get("orders", ())))
-                for one in origin
+                (int(item["tick"]), str(item["trial"]), int(item["seed"]), _orders(item.get("orders", ())))
+                for item in origin
             ]
             rows.append(
                 (int(known.get("begin", "0")), known["trial"], int(known["seed"]), recorded_orders(path, known))
@@ -128,12 +128,12 @@ class Provenance:
     @property
     def origin(self) -> list[dict[str, Any]]:
         """Metadata of the segments before the last."""
-        found = []
+        result = []
         for part, following in itertools.pairwise(self.parts):
             row: dict[str, Any] = {"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed}
             orders = [[tick, write_order(order)] for tick, order in part.orders if tick <= following.tick]
-            found.append(row | ({"orders": orders} if orders else {}))
-        return found
+            result.append(row | ({"orders": orders} if orders else {}))
+        return result
 
     def changes_until(self, tick: int) -> int:
         """Return the number of orders up to a tick that change the trial."""

@@ -89,10 +89,10 @@ class RecordedSimulation:
             )
         comparison = DigestComparison(EpisodeDigest(), self._wanted)
         start = continue_from(self.path, course, self._known, tick, comparison, self._fresh, self._places)
-        found = simulate_to(tick, course, comparison, start, str(self.path), StopRequest())
+        simulation = simulate_to(tick, course, comparison, start, str(self.path), StopRequest())
         if comparison.differs is not None:
             raise EpisodeError(f"{self.path} differs from its replay from {comparison.differs:g} s on")
-        return found
+        return simulation
 
     def run_from(self, seconds: float) -> SimulationRun:
         """Return a run that continues from an instant [s] with the recorded orders, to watch the episode.
@@ -149,9 +149,9 @@ def simulate_to(
     """
     if start is not None:
         try:
-            found = course.simulate_until(comparison, stop, progress, until=tick, start=start)
+            simulation = course.simulate_until(comparison, stop, progress, until=tick, start=start)
             if comparison.differs is None:
-                return found
+                return simulation
         except EpisodeError:  # the state of a wrong keyframe may end the run
             pass
         warnings.warn(f"{name} differs after its keyframe; {LATE}", KeyframeWarning, stacklevel=4)

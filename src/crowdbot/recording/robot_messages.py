@@ -212,7 +212,7 @@ class RobotMessages:
         """Take the readings of the first odometry of each robot; a branch begins after earlier ones."""
         if self._begin and self.simulation is not None:
             for control in self.simulation.robots:
-                for sensor in (one for one in control.sensors if one.mount.sensor.encoders):
+                for sensor in (sensor for sensor in control.sensors if sensor.mount.sensor.encoders):
                     self._take(control.robot.name, sensor.name, sensor.reading(0))
         self._begin = False
         for robot, mount, reading in frame.readings:

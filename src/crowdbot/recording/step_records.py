@@ -265,16 +265,16 @@ def read_steps(tape: McapReader, path: Path) -> Iterator[RecordedStep]:
     messages, topics = Messages(), _ReadingTopics(tape)
     fixed: Poses = {}
     for stamp, group in _steps(tape, topics.is_read_later):
-        sensors = {one.topic.topic.removesuffix(REST) for one in group if one.topic.kind == KIND}
+        sensors = {item.topic.topic.removesuffix(REST) for item in group if item.topic.kind == KIND}
         parts: dict[str, dict[str, tuple[str, McapPlace]]] = {topic: {} for topic in sorted(sensors)}
         decoded = []
-        for one in group:
-            name, kind = one.topic.topic, one.topic.kind
+        for item in group:
+            name, kind = item.topic.topic, item.topic.kind
             sensor, suffix = topics.parts.get(name, ("", ""))
             if sensor in sensors:
-                parts[sensor][suffix] = kind, one.place
+                parts[sensor][suffix] = kind, item.place
             elif name not in UNUSED and kind in messages.store.types:
-                decoded.append((name, messages.decode_message(one.data or read_message(path, one.place), kind)))
+                decoded.append((name, messages.decode_message(item.data or read_message(path, item.place), kind)))
         readings = {}
         for topic, found in parts.items():
             name = topic.strip("/")
@@ -294,7 +294,7 @@ class _ReadingTopics:
         """Return whether the messages of a channel are parts of readings, or not used."""
         if len(self._tape.topics) != self._known:
             self._known = len(self._tape.topics)
-            sensors = {one.topic.removesuffix(REST) for one in self._tape.topics.values() if one.kind == KIND}
+            sensors = {topic.topic.removesuffix(REST) for topic in self._tape.topics.values() if topic.kind == KIND}
             self.parts = {name + suffix: (name, suffix) for name in sensors for suffix in self._suffixes}
         return channel.topic in self.parts or channel.topic in UNUSED
 
@@ -303,12 +303,12 @@ def _steps(tape: McapReader, later: Callable[[McapChannel], bool]) -> Iterator[t
     """Yield the messages of each time [ns]; those of one time may be in several chunks."""
     waiting: dict[int, list[McapMessage]] = {}
     chunk = None
-    for one in tape.messages(later):
-        if one.place.record is not chunk:
-            chunk = one.place.record
+    for message in tape.messages(later):
+        if message.place.record is not chunk:
+            chunk = message.place.record
             for stamp in sorted(stamp for stamp in waiting if stamp < chunk.begin):
                 yield stamp, waiting.pop(stamp)
-        waiting.setdefault(one.stamp, []).append(one)
+        waiting.setdefault(message.stamp, []).append(message)
     for stamp in sorted(waiting):
         yield stamp, waiting.pop(stamp)
 

@@ -198,7 +198,7 @@ class SimulationCamera:
         own = {camera.name: camera for camera in simulation.trial.cameras}
         robot, _, self.sensor = name.partition("/")
         if self.sensor:
-            self.control = next(one for one in simulation.robots if one.robot.name == robot)
+            self.control = next(item for item in simulation.robots if item.robot.name == robot)
             return
         scene = simulation.world.scene
         self.camera: Camera = own[name] if name in own else overview(
@@ -226,7 +226,7 @@ class SimulationCamera:
     def _by_sensor(self) -> tuple[Any, Any, Any]:
         assert self.control is not None
         around = self.simulation.around
-        probe = next(one for one in self.control.sensors if one.mount.name == self.sensor)
+        probe = next(sensor for sensor in self.control.sensors if sensor.mount.name == self.sensor)
         sensor: Any = probe.mount.sensor
         camera = sensor if isinstance(sensor, RGBCamera) else RGBCamera(
             width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,

@@ -102,12 +102,12 @@ class ImageWriter:
         try:
             for shot in shots:
                 count += 1
-                for kind, one in zip(kinds, reels, strict=True):
-                    one.add(_painted(shot, kind))
-            return [one.finish() for one in reels], count
+                for kind, item in zip(kinds, reels, strict=True):
+                    item.add(_painted(shot, kind))
+            return [item.finish() for item in reels], count
         finally:
-            for one in reels:
-                one.abandon()
+            for item in reels:
+                item.abandon()
 
 
 def _saved(shot: RenderedImage, kind: str, path: Path) -> Path:

@@ -59,7 +59,7 @@ def _followed(name: str) -> bool:
 
 def _file(name: str) -> Path | None:
     path = PACKAGE.joinpath(*name.split(".")[1:])
-    return next((one for one in (path.with_suffix(".py"), path / "__init__.py") if one.is_file()), None)
+    return next((item for item in (path.with_suffix(".py"), path / "__init__.py") if item.is_file()), None)
 
 
 @functools.cache
@@ -72,10 +72,10 @@ def _code(file: Path) -> bytes:
     """Return the syntax tree of a file without docstrings and without what happens to stored rows, as text."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     if file.parent == Path(__file__).parent:
-        tree.body = [one for one in tree.body if not _is_evaluation(one)]
+        tree.body = [item for item in tree.body if not _is_evaluation(item)]
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
-            node.body = [one for one in node.body if not _is_text(one)]
+            node.body = [item for item in node.body if not _is_text(item)]
     return ast.dump(tree).encode()
 
 
@@ -103,8 +103,8 @@ def _names(name: str, file: Path) -> Iterator[str]:
         if isinstance(node, ast.ImportFrom):
             base = _base(here, node)
             if base.startswith("crowdbot."):
-                for one in node.names:
-                    yield from _owner(base, one.name)
+                for item in node.names:
+                    yield from _owner(base, item.name)
 
 
 def _base(here: str, node: ast.ImportFrom) -> str:
@@ -127,7 +127,7 @@ def _owner(base: str, wanted: str) -> Iterator[str]:
         yield base
         return
     found = list(_exports(base, file).get(wanted, ()))
-    for owner in found or [f"{base}.{one.stem}" for one in file.parent.glob("*.py") if one.stem != "__init__"]:
+    for owner in found or [f"{base}.{item.stem}" for item in file.parent.glob("*.py") if item.stem != "__init__"]:
         if found and owner != base:
             yield from _owner(owner, wanted)
         else:
@@ -137,10 +137,10 @@ def _owner(base: str, wanted: str) -> Iterator[str]:
 @functools.cache
 def _exports(base: str, file: Path) -> dict[str, tuple[str, ...]]:
     """Return the modules that define the names of a face, by name."""
-    found: dict[str, tuple[str, ...]] = {}
+    exports: dict[str, tuple[str, ...]] = {}
     for node in ast.walk(_tree(file)):
         if isinstance(node, ast.ImportFrom):
             owner = _base(base, node)
-            for one in node.names:
-                found[one.asname or one.name] = (owner,)
-    return found
+            for name in node.names:
+                exports[name.asname or name.name] = (owner,)
+    return exports

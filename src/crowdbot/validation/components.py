@@ -243,7 +243,7 @@ def judge_counter(result: dict[str, Any]) -> Verdict:
         words.append("a crowd gets through a corridor faster if more people come against it")
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of two crowds in a corridor are pushed through its walls")
-    text = " < ".join(f"{one:.0f}" for one in seconds)
+    text = " < ".join(f"{second:.0f}" for second in seconds)
     return Verdict(f"{text} s{stuck_part(result)}", not words, "; ".join(words))
 
 

@@ -268,11 +268,11 @@ def write_contact_page(rows: Rows, path: Path, command: str, reasons: Mapping[st
         walk = row["rimea-1"]
         time = f"{walk['seconds']:.1f}" if walk["seconds"] is not None else "more than 60"
         cells = [_cell(row[trial]) for trial in trials]
-        passed = all(one["passed"] for one in row.values())
+        passed = all(item["passed"] for item in row.values())
         text.append(
             f"| {name} | {row[trials[0]]['starts']} | {time} | {' | '.join(cells)} | {'✓' if passed else '✗'} |"
         )
-    failed = [name for name, row in rows.items() if not all(one["passed"] for one in row.values())]
+    failed = [name for name, row in rows.items() if not all(item["passed"] for item in row.values())]
     text += ["", "## Why a model exceeds a limit", ""]
     text += [f"* **{name}**: {reasons.get(name, 'not explained yet')}." for name in failed] or ["No model does."]
     path.write_text("\n".join(text) + "\n", encoding="utf-8")

@@ -89,7 +89,7 @@ def summarize(rows: Sequence[Row]) -> dict[str, Any]:
     return {
         **pool_bins([row["bins"] for row in rows], BIN, LEAST if len(rows) > 1 else 1),
         "initial_density": rows[0]["initial_density"],
-        "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
+        "steady_from": [list(item) for item in zip(*(row["steady_from"] for row in rows), strict=True)],
         **worst_of(rows),
     }
 

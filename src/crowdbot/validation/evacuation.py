@@ -260,7 +260,7 @@ def hall_departures(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
     walk = _hall(model, DOOR_PEOPLE, (-1.0,), numbers, LIMIT, lambda part: None)
     y = walk.position[..., 1]
     out = np.any(((y < -0.5) | (y > DEPTH + 0.5)) & walk.present, axis=0)
-    return [float(one) for one in out.mean(axis=1)]
+    return [float(item) for item in out.mean(axis=1)]
 
 
 def corner_times(model: CrowdModel, numbers: Sequence[int]) -> list[float]:

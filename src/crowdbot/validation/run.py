@@ -172,12 +172,12 @@ class Validation:
             "models": {
                 model: {
                     name: {
-                        **one.verdict._asdict(),
-                        "starts": one.starts,
-                        "seconds": one.seconds,
-                        "result": one.result,
+                        **check.verdict._asdict(),
+                        "starts": check.starts,
+                        "seconds": check.seconds,
+                        "result": check.result,
                     }
-                    for name, one in checks.items()
+                    for name, check in checks.items()
                 }
                 for model, checks in self.outcomes.items()
             },
@@ -268,10 +268,10 @@ def variant_of(model: CrowdModel) -> str:
     >>> variant_of(SocialForce())
     'variant gradient'
     """
-    values = [(one.name, getattr(model, one.name)) for one in dataclasses.fields(model) if one.init]
+    values = [(field.name, getattr(model, field.name)) for field in dataclasses.fields(model) if field.init]
     texts = [f"{name.replace('_', ' ')} {value}" for name, value in values if isinstance(value, str)]
     texts += [name.replace("_", " ") for name, value in values if value is True]
-    usual = {one.name for one in dataclasses.fields(model) if one.default is True}
+    usual = {field.name for field in dataclasses.fields(model) if field.default is True}
     texts += [f"no {name.replace('_', ' ')}" for name, value in values if value is False and name in usual]
     return ", ".join(texts)
 

@@ -85,7 +85,7 @@ def summarize(rows: Sequence[Row]) -> dict[str, Any]:
         "speed": found["mean"],
         "low": found["low"],
         "high": found["high"],
-        "steady_from": [list(one) for one in zip(*(row["steady_from"] for row in rows), strict=True)],
+        "steady_from": [list(item) for item in zip(*(row["steady_from"] for row in rows), strict=True)],
         "overtakings": sum(row["overtakings"] for row in rows),
         **worst_of(rows),
     }

@@ -143,13 +143,13 @@ def pool_bins(starts: Sequence[dict[str, Any]], width: float, least: int, resamp
     >>> pool_bins(rows, 0.5, 2)["speed"]
     [1.1]
     """
-    bins = sorted({n for one in starts for n in one["bin"]})
+    bins = sorted({n for start in starts for n in start["bin"]})
     sums = np.zeros((3, len(starts), len(bins)))
-    for e, one in enumerate(starts):
-        for k, n in enumerate(one["bin"]):
-            sums[:, e, bins.index(n)] = one["count"][k], one["sum"][k], one["squares"][k]
+    for e, start in enumerate(starts):
+        for k, n in enumerate(start["bin"]):
+            sums[:, e, bins.index(n)] = start["count"][k], start["sum"][k], start["squares"][k]
     drawn = stream(0, "pool").integers(0, len(starts), (resamples, len(starts)))
-    found: dict[str, Any] = {name: [] for name in ("density", "speed", "spread", "count", "low", "high")}
+    result: dict[str, Any] = {name: [] for name in ("density", "speed", "spread", "count", "low", "high")}
     for k, n in enumerate(bins):
         count, total, squares = sums[:, :, k].sum(axis=1)
         if count < least:
@@ -159,9 +159,9 @@ def pool_bins(starts: Sequence[dict[str, Any]], width: float, least: int, resamp
         means = totals[counts > 0] / counts[counts > 0]
         low, high = np.percentile(means, (2.5, 97.5)) if len(starts) > 1 else (mean, mean)
         values = (n + 0.5) * width, round(mean, 6), max(0.0, squares / count - mean**2) ** 0.5, count, low, high
-        for name, value in zip(found, values, strict=True):
-            found[name].append(int(value) if name == "count" else float(value))
-    return found
+        for name, value in zip(result, values, strict=True):
+            result[name].append(int(value) if name == "count" else float(value))
+    return result
 
 
 def text_of(value: float, ends: Sequence[float] | None) -> str:

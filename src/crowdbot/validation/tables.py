@@ -52,8 +52,8 @@ def model_table(done: Validation) -> list[str]:
         cells = [_cell(checks[c.name]) for c in CHECKS]
         passed = sum(checks[c.name].verdict.passed for c in CHECKS)
         ran = sum(checks[c.name].starts > 0 for c in CHECKS)
-        overlap = max((one.result.get("overlap", 0.0) for one in checks.values()), default=0.0)
-        seconds = sum(one.seconds for one in checks.values())
+        overlap = max((check.result.get("overlap", 0.0) for check in checks.values()), default=0.0)
+        seconds = sum(check.seconds for check in checks.values())
         lines.append(
             f"| {_name(done, model)} | {' | '.join(cells)} | {passed} of {ran} | {_starts(checks)} |"
             f" {overlap:.2f} | {seconds:.0f} |"
@@ -61,7 +61,7 @@ def model_table(done: Validation) -> list[str]:
     if done.people:
         cells = [_people(done.people, check.name) for check in CHECKS]
         lines.append(f"| *people in recordings* | {' | '.join(cells)} | | | | |")
-    total = sum(one.seconds for checks in done.outcomes.values() for one in checks.values())
+    total = sum(check.seconds for checks in done.outcomes.values() for check in checks.values())
     lines += ["", f"Total time: {total:.0f} s ({_environment()}).", ""]
     if done.skipped:
         lines += ["Not run:", "", *(f"* {name}: {why}." for name, why in done.skipped.items()), ""]
@@ -78,9 +78,9 @@ def _name(done: Validation, model: str) -> str:
     return f"{model} ({variant})" if variant else model
 
 
-def _cell(one: CheckOutcome) -> str:
-    mark = "✓ " if one.verdict.passed else "✗ "
-    return f"{mark if one.starts else ''}{one.verdict.value}".replace("|", "/")
+def _cell(check_outcome: CheckOutcome) -> str:
+    mark = "✓ " if check_outcome.verdict.passed else "✗ "
+    return f"{mark if check_outcome.starts else ''}{check_outcome.verdict.value}".replace("|", "/")
 
 
 def _starts(checks: dict[str, CheckOutcome]) -> str:
@@ -107,7 +107,7 @@ def _people(people: dict[str, Any], name: str) -> str:
 
 def ability_table(done: Validation) -> list[str]:
     """Return the table of what each model can and cannot do, with its range."""
-    ranges = {one.model: one for one in MODEL_RANGES}
+    ranges = {item.model: item for item in MODEL_RANGES}
     lines = [
         "## What each model can and cannot do",
         "",
@@ -131,8 +131,8 @@ def deficiencies(done: Validation) -> list[str]:
     """Return a sentence on the failures of each model."""
     lines = ["## Deficiencies of each model", ""]
     for model, checks in done.outcomes.items():
-        words = [one.verdict.words for one in checks.values() if one.verdict.words]
-        overlap = max((one.result.get("overlap", 0.0) for one in checks.values()), default=0.0)
+        words = [check.verdict.words for check in checks.values() if check.verdict.words]
+        overlap = max((check.result.get("overlap", 0.0) for check in checks.values()), default=0.0)
         if overlap > 0.1:
             words.append(f"bodies overlap by {overlap:.2f} m")
         same = _same(done, model)
@@ -145,10 +145,10 @@ def deficiencies(done: Validation) -> list[str]:
 
 def _same(done: Validation, model: str) -> str:
     """Return the first other model with identical results in all checks, if any."""
-    own = {name: (one.result, one.starts) for name, one in done.outcomes[model].items() if name != TIME_STEPS.name}
+    own = {name: (item.result, item.starts) for name, item in done.outcomes[model].items() if name != TIME_STEPS.name}
     for other, checks in done.outcomes.items():
         same = own == {name: (checks[name].result, checks[name].starts) for name in own}
-        if other != model and same and any(one.starts for one in checks.values()):
+        if other != model and same and any(check.starts for check in checks.values()):
             return other
     return ""
 
@@ -242,8 +242,8 @@ def steady_table(done: Validation) -> list[str]:
 def _steady_cell(begins: Sequence[Any] | None) -> str:
     if begins is None:
         return "-"
-    runs = [one for row in begins for one in (row if isinstance(row, list) else [row])]
-    found = [one for one in runs if one is not None]
+    runs = [item for row in begins for item in (row if isinstance(row, list) else [row])]
+    found = [run for run in runs if run is not None]
     return f"{len(found)} of {len(runs)}" + (f", {np.median(found):.1f} s" if found else "")
 
 

@@ -58,7 +58,7 @@ class BodySize(NamedTuple):
         eye = bones.head[bones.bone("head")] + eye_offsets(people)[number]
         neck, pelvis = bones.head[bones.bone("neck_01")], bones.head[0]
         hips = float(bones.head[bones.bone("thigh_l"), 2])
-        ahead, up = (float(one) for one in (eye - neck)[[0, 2]])
+        ahead, up = (float(item) for item in (eye - neck)[[0, 2]])
         away = float(neck[0] - pelvis[0])
         return cls(float(eye[2]), (ahead, up), away, float(neck[2]) - hips, float(people.measures.height[number]))
 
@@ -144,7 +144,7 @@ def _move(pose: Floats, room: RigidTransform) -> Floats:
 
 
 def _numbers(pose: Floats) -> tuple[float, ...]:
-    return tuple(round(one, DIGITS) for one in pose.tolist())
+    return tuple(round(item, DIGITS) for item in pose.tolist())
 
 
 def _is_near(hand: Floats, head: Floats) -> bool:
@@ -202,7 +202,7 @@ def measure_pose(samples: Sequence[HeadsetSample], body: str) -> BodyMeasure:
     >>> found.pose, 1.7 < found.stature < 1.8, 0.45 < found.arm < 0.6, abs(found.difference) < 0.05
     ('T', True, True, True)
     """
-    whole = [(one.head, one.left, one.right) for one in samples if _is_whole(one)][-POSE_SAMPLES:]
+    whole = [(sample.head, sample.left, sample.right) for sample in samples if _is_whole(sample)][-POSE_SAMPLES:]
     if len(whole) < POSE_SAMPLES:
         raise InputError("head and both hands must be tracked for half a second")
     points = np.array([[part[:3] for part in row if part is not None] for row in whole])

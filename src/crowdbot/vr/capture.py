@@ -22,7 +22,7 @@ def sample_record(sample: MotionSample) -> dict[str, Any]:
     >>> sample_record(MotionSample(3, 0.5, np.zeros((1, 3)), np.eye(3)[None]))["rotation"]
     [[1.0, 0.0, 0.0, 0.0]]
     """
-    turns = np.array([unit_quaternions(one) for one in sample.rotation])
+    turns = np.array([unit_quaternions(item) for item in sample.rotation])
     return {
         "number": sample.number, "time": sample.time, "position": sample.position.round(4).tolist(),
         "rotation": turns.round(5).tolist(),
@@ -47,10 +47,10 @@ class StreamTap(PoseStream):
 
     def read(self, subject: str, now: float, ahead: float) -> list[tuple[float, MotionSample]]:
         """Return the samples of the stream, see :meth:`crowdbot.bridges.PoseStream.read`."""
-        found = self.stream.read(subject, now, ahead)
-        for time, sample in found:
+        result = self.stream.read(subject, now, ahead)
+        for time, sample in result:
             self._tell({"capture": subject, "step": round(time, 6), **sample_record(sample)})
-        return found
+        return result
 
     def statistics(self, subject: str = "") -> StreamStatistics:
         """Return what has been received of a subject."""
@@ -143,7 +143,7 @@ class Suit:
             shift = wish
         shift = shift + (1.0 - math.exp(-(now - time) / PLACE)) * (wish - shift)
         self._aligned = (now, angle, shift)
-        x, y = (round(float(one), DIGITS) for one in (pose.x + shift[0], pose.y + shift[1]))
+        x, y = (round(float(item), DIGITS) for item in (pose.x + shift[0], pose.y + shift[1]))
         return BodyPose(x, y, pose.heading, skeleton=(x, y, *pose.skeleton[2:]))
 
     def _eyes(self, pose: BodyPose) -> Floats:

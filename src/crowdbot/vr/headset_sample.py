@@ -163,9 +163,9 @@ def _wrist(pose: Floats, side: str, hand: bool) -> Floats:
     if hand:
         return _pose(pose[:3], np.stack([-z, -x, y], axis=1))
     own = np.stack([-y, -z, x] if side == "right" else [-y, z, -x], axis=1)
-    found = _pose(pose[:3], own)
-    found[:3] -= PALM * own[:, 0]
-    return found
+    wrist = _pose(pose[:3], own)
+    wrist[:3] -= PALM * own[:, 0]
+    return wrist
 
 
 MAGIC = b"CBHR1\n"
@@ -293,7 +293,9 @@ def read_headset_clock(path: Path | str) -> HeadsetClock:
     Raises:
         InputError: the file is no recording of a headset, an entry is damaged, or no clock was estimated.
     """
-    notes = [(one.time, one.note["clock"]) for one in read_headset_recording(path) if one.note and "clock" in one.note]
+    notes = [
+        (item.time, item.note["clock"]) for item in read_headset_recording(path) if item.note and "clock" in item.note
+    ]
     if not notes:
         raise InputError(f"{path}: the clocks were not compared; a recording needs two messages of the headset")
     rows = [(time, note["offset"], note["round_trip"], note["utc"]) for time, note in notes]

@@ -55,7 +55,9 @@ class ClockSync:
         if not (math.isfinite(offset) and 0.0 <= delay < 60.0 and t2 >= t1):
             return
         self._exchanges.append((t3, offset, delay))
-        _, self.offset, self.delay = min(self._exchanges, key=lambda one: one[2] + DRIFT * abs(t3 - one[0]))
+        _, self.offset, self.delay = min(
+            self._exchanges, key=lambda exchange: exchange[2] + DRIFT * abs(t3 - exchange[0])
+        )
 
     def to_server(self, time: float) -> float:
         """Return a time of the headset in that of the server [s]; NaN before the first exchange."""
@@ -173,9 +175,9 @@ class LatencyLog:
 
     def summary(self) -> dict[str, float | None]:
         """Return medians and 95th percentiles [ms] and the counts, for a page."""
-        found: dict[str, float | None] = {"lost": self.lost, "dropped": self.dropped}
+        result: dict[str, float | None] = {"lost": self.lost, "dropped": self.dropped}
         for name in ("motion", "picture"):
             for word, share in (("median", 0.5), ("p95", 0.95)):
                 value = self.quantile(name, share)
-                found[f"{name}_{word}"] = round(1e3 * value, 2) if math.isfinite(value) else None
-        return found
+                result[f"{name}_{word}"] = round(1e3 * value, 2) if math.isfinite(value) else None
+        return result

@@ -110,8 +110,8 @@ def fit_rigid(
     if not (np.all(np.isfinite(a)) and np.all(np.isfinite(b))):
         raise InputError("calibration: a coordinate is not a finite number")
     p, q = a - a.mean(axis=0), b - b.mean(axis=0)
-    spread = [np.linalg.svd(one[:, :2] if level else one, compute_uv=False) for one in (p, q)]
-    if min(one[0 if level else 1] for one in spread) < FLAT or min(one[1] for one in spread) < FLAT:
+    spread = [np.linalg.svd(item[:, :2] if level else item, compute_uv=False) for item in (p, q)]
+    if min(item[0 if level else 1] for item in spread) < FLAT or min(item[1] for item in spread) < FLAT:
         raise InputError("calibration: the points are on one line; touch points around the room")
     rotation = _heading_rotation(p, q) if level else _rotation(p, q)
     transform = RigidTransform(rotation, b.mean(axis=0) - rotation @ a.mean(axis=0))

@@ -31,8 +31,8 @@ def local_addresses() -> tuple[str, ...]:
         probe.connect(("192.0.2.1", 9))  # sends nothing
         found.append(probe.getsockname()[0])
     with contextlib.suppress(OSError):
-        found += [str(one[4][0]) for one in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)]
-    return tuple(one for one in dict.fromkeys(found) if not ipaddress.ip_address(one).is_loopback)
+        found += [str(item[4][0]) for item in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)]
+    return tuple(fromkey for fromkey in dict.fromkeys(found) if not ipaddress.ip_address(fromkey).is_loopback)
 
 
 def certificate_files(folder: Path | None = None, addresses: tuple[str, ...] | None = None) -> tuple[Path, Path]:
@@ -67,13 +67,13 @@ def tls_context(certificate: Path, key: Path) -> ssl.SSLContext:
 def _is_usable(certificate: Path, key: Path, names: tuple[str, ...]) -> bool:
     x509 = _x509()
     try:
-        found = x509.load_pem_x509_certificate(certificate.read_bytes())
+        pem_x509_certificate = x509.load_pem_x509_certificate(certificate.read_bytes())
         tls_context(certificate, key)
-        known = found.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+        known = pem_x509_certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
     except (OSError, ValueError, x509.ExtensionNotFound):
         return False
-    rest = found.not_valid_after_utc - datetime.datetime.now(datetime.UTC)
-    return set(names) <= {str(one) for one in known.get_values_for_type(x509.IPAddress)} and rest.days > RENEW
+    rest = pem_x509_certificate.not_valid_after_utc - datetime.datetime.now(datetime.UTC)
+    return set(names) <= {str(item) for item in known.get_values_for_type(x509.IPAddress)} and rest.days > RENEW
 
 
 def _write(certificate: Path, key: Path, names: tuple[str, ...]) -> None:
@@ -84,7 +84,7 @@ def _write(certificate: Path, key: Path, names: tuple[str, ...]) -> None:
     secret = ec.generate_private_key(ec.SECP256R1())
     name = x509.Name([x509.NameAttribute(x509.oid.NameOID.COMMON_NAME, "crowdbot")])
     now = datetime.datetime.now(datetime.UTC)
-    owners = [x509.DNSName("localhost"), *(x509.IPAddress(ipaddress.ip_address(one)) for one in names)]
+    owners = [x509.DNSName("localhost"), *(x509.IPAddress(ipaddress.ip_address(name)) for name in names)]
     made = (
         x509.CertificateBuilder()
         .subject_name(name)

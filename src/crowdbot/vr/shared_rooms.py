@@ -31,10 +31,10 @@ class RoomLimits:
     corners: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
-        rows = [tuple(one) if isinstance(one, list | tuple) else () for one in self.corners]
-        if not 3 <= len(rows) <= 100 or any(len(one) != 2 for one in rows):
+        rows = [tuple(corner) if isinstance(corner, list | tuple) else () for corner in self.corners]
+        if not 3 <= len(rows) <= 100 or any(len(row) != 2 for row in rows):
             raise InputError("limits of a room: expected 3 to 100 corners x, y")
-        if not all(isinstance(one, int | float) and abs(one) <= 1e3 for row in rows for one in row):
+        if not all(isinstance(item, int | float) and abs(item) <= 1e3 for row in rows for item in row):
             raise InputError("limits of a room: each coordinate must be a number of at most 1000 m")
         object.__setattr__(self, "corners", tuple((float(x), float(y)) for x, y in rows))
 
@@ -99,7 +99,7 @@ class RealRoom:
             "y": float(self.place.translation[1]),
             "z": float(self.place.translation[2]),
             "heading": self.place.heading,
-            "limits": [] if self.limits is None else [list(one) for one in self.limits.corners],
+            "limits": [] if self.limits is None else [list(corner) for corner in self.limits.corners],
             "source": self.source,
             "target": self.target,
             "rms": None if fit is None else fit.rms,
@@ -142,13 +142,13 @@ class SharedRooms:
     def add_pair(self, name: str, source: Sequence[float], target: Sequence[float]) -> None:
         """Add a point of a room and the same point of the virtual room [m]; raises InputError for other values."""
         room = self.room(name)
-        for one in (source, target):
-            if len(one) != 3 or not all(isinstance(k, int | float) and abs(k) <= 1e3 for k in one):
-                raise InputError(f"calibration: a point {list(one)} must be 3 numbers x, y, z of at most 1000 m")
+        for item in (source, target):
+            if len(item) != 3 or not all(isinstance(k, int | float) and abs(k) <= 1e3 for k in item):
+                raise InputError(f"calibration: a point {list(item)} must be 3 numbers x, y, z of at most 1000 m")
         if len(room.source) >= MOST:
             raise InputError(f"calibration: more than {MOST} points; clear them first")
-        room.source.append([float(one) for one in source])
-        room.target.append([float(one) for one in target])
+        room.source.append([float(item) for item in source])
+        room.target.append([float(item) for item in target])
 
     def clear(self, name: str) -> None:
         """Remove the points of a room; its place stays."""
@@ -177,12 +177,12 @@ class SharedRooms:
         if not isinstance(record, dict) or len(record) > MOST or not all(map(_is_room, record)):
             raise InputError(f"a file of rooms must have the keys {' and '.join(ROOMS)}")
         try:
-            for name, one in record.items():
+            for name, item in record.items():
                 room = made.rooms.setdefault(name, RealRoom())
-                numbers = [float(one[key]) for key in ("x", "y", "z", "heading")]
+                numbers = [float(item[key]) for key in ("x", "y", "z", "heading")]
                 room.set_place(RigidTransform.at(numbers[0], numbers[1], numbers[3], numbers[2]))
-                room.limits = RoomLimits(tuple(tuple(row) for row in one["limits"])) if one["limits"] else None
-                for source, target in zip(one["source"], one["target"], strict=True):
+                room.limits = RoomLimits(tuple(tuple(row) for row in item["limits"])) if item["limits"] else None
+                for source, target in zip(item["source"], item["target"], strict=True):
                     made.add_pair(name, source, target)
                 if len(room.source) >= FEWEST:
                     made.calibrate(name)

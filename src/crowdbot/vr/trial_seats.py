@@ -86,13 +86,13 @@ def linked_robots(trial: Trial) -> list[str]:
 
 def hold_sources(sources: Sequence[object], stop: bool) -> list[str]:
     """Stop or release the robots of connections; return why some of them are not released."""
-    found = [one.hold(stop, OPERATOR) for one in sources if isinstance(one, OwnSource)]
+    found = [source.hold(stop, OPERATOR) for source in sources if isinstance(source, OwnSource)]
     return [one for one in found if one]
 
 
 def source_problems(sources: Sequence[object]) -> list[str]:
     """Return why robots of connections stand."""
-    return [line for one in sources if isinstance(one, OwnSource) for line in one.problems()]
+    return [line for source in sources if isinstance(source, OwnSource) for line in source.problems()]
 
 
 def _has_source(robot: RobotSpec) -> bool:
@@ -151,7 +151,7 @@ class TrialSeats:
 
     def capture(self, captures: Sequence[MotionCapture]) -> None:
         """Let motion capture move robots, and avatars without a headset, from the next step on."""
-        taps = [MotionCapture(StreamTap(one.stream, self._note_sample), one.bindings) for one in captures]
+        taps = [MotionCapture(StreamTap(capture.stream, self._note_sample), capture.bindings) for capture in captures]
         self._captures, self._moved = taps, None
 
     def _note_sample(self, record: dict[str, Any]) -> None:
@@ -177,8 +177,8 @@ class TrialSeats:
             found += person.orders(simulation)
         if self._moved is None:
             self._moved = link_captures(self._captures, self.links or ())
-        for one in self._moved:
-            found += one.orders(simulation)
+        for item in self._moved:
+            found += item.orders(simulation)
         return found
 
     def hold(self, stop: bool) -> list[str]:
@@ -193,12 +193,12 @@ class TrialSeats:
         if self._stop.set and not self._held:
             self.hold(True)
         self._held = self._stop.set
-        return [order for one in self.links for order in one.orders(simulation)]
+        return [order for link in self.links for order in link.orders(simulation)]
 
     def close(self) -> None:
         """Close the recordings and connections, and write the latencies of the trial to its folder."""
-        for one in self.links or ():
-            one.close()
+        for link in self.links or ():
+            link.close()
         for person in list(self._seated.values()):
             self.leave(person)
         if self._raw is not None:
@@ -210,16 +210,16 @@ class TrialSeats:
 
 def external_avatars(trial: Trial) -> list[str]:
     """Return the names of the avatars of a trial that participants in headsets can move."""
-    return [one.name for one in trial.avatars if one.source == "external" and one.headset]
+    return [avatar.name for avatar in trial.avatars if avatar.source == "external" and avatar.headset]
 
 
 def with_bodies(trial: Trial, bodies: dict[str, BodyMeasure]) -> Trial:
     """Return a trial whose avatars have the size of their participants, by the names of the avatars."""
     avatars = tuple(
-        dataclasses.replace(one, height=bodies[one.name].stature, body=bodies[one.name].body)
-        if one.name in bodies and one.source == "external"
-        else one
-        for one in trial.avatars
+        dataclasses.replace(avatar, height=bodies[avatar.name].stature, body=bodies[avatar.name].body)
+        if avatar.name in bodies and avatar.source == "external"
+        else avatar
+        for avatar in trial.avatars
     )
     return dataclasses.replace(trial, avatars=avatars)
 
@@ -235,14 +235,14 @@ def _free_file(folder: Path, avatar: str) -> Path:
 def link_captures(captures: Sequence[MotionCapture], links: Sequence[object]) -> list[MotionCapture]:
     """Give motion capture of real robots to their connections, and return what moves everybody else."""
     rest = []
-    for one in captures:
-        targets = [binding.target for binding in one.bindings]
+    for capture in captures:
+        targets = [binding.target for binding in capture.bindings]
         own = [link for link in links if isinstance(link, RealRobotLink) and link.robot in targets]
         for link in own:
-            link.use_capture(MotionCapture(one.stream, [b for b in one.bindings if b.target == link.robot]))
-        others = [b for b in one.bindings if b.target not in {link.robot for link in own}]
+            link.use_capture(MotionCapture(capture.stream, [b for b in capture.bindings if b.target == link.robot]))
+        others = [b for b in capture.bindings if b.target not in {link.robot for link in own}]
         if others:
-            rest.append(MotionCapture(one.stream, others))
+            rest.append(MotionCapture(capture.stream, others))
     return rest
 
 

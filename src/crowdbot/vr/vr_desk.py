@@ -116,7 +116,7 @@ class VrDesk(Desk):
         with self._lock:
             pose = self._pose
             return {
-                "participants": [one.summary() for one in self.participants.values()],
+                "participants": [participant.summary() for participant in self.participants.values()],
                 "settings": dataclasses.asdict(self.settings),
                 "rooms": {name: room.state() for name, room in self.rooms.rooms.items()},
                 "captures": self.capture_states(),
@@ -165,7 +165,7 @@ class VrDesk(Desk):
     def resume(self) -> None:
         """Continue the run or the session."""
         with self._lock:
-            self._warnings = {one for one in self._warnings if not one.startswith("paused")}
+            self._warnings = {warning for warning in self._warnings if not warning.startswith("paused")}
         if not self._stop.set:
             self._hold_links(False)
         experiment = self.experiment
@@ -239,8 +239,8 @@ class VrDesk(Desk):
                 self._watcher.start()
 
     def _apply_captures(self) -> None:
-        for one in self.participants.values():
-            one.suit = self.suit_of(one.avatar)
+        for participant in self.participants.values():
+            participant.suit = self.suit_of(participant.avatar)
         if self._seats is not None:
             self._seats.capture(self.captures_of(self._seats.trial, self._seats.avatars))
         self._start_watcher()
@@ -264,8 +264,8 @@ class VrDesk(Desk):
     def close(self) -> None:
         """Stop the checks and close the recordings."""
         self._closed.set()
-        for one in list(self.participants.values()):
-            self._discard_recording(one)
+        for participant in list(self.participants.values()):
+            self._discard_recording(participant)
         if self._watcher is not None:
             self._watcher.join(2.0)
         self.close_captures()
@@ -288,13 +288,13 @@ class VrDesk(Desk):
         if not self._in_experiment:
             with contextlib.suppress(InputError):
                 run = self.simulator.run
-                for one in people:
-                    if run.controls.get(one.avatar) is not one and run.state == "running":
-                        self._attach(run, one)
+                for person in people:
+                    if run.controls.get(person.avatar) is not person and run.state == "running":
+                        self._attach(run, person)
                 self._move_by_captures(run)
                 self._stop_at_limits(run)
-        for one in people:
-            self._pause_if_lost(one)
+        for person in people:
+            self._pause_if_lost(person)
         if self._stop.set and STOPPED not in self._warnings:  # a robot was near the limits of its room
             self._warnings.add(STOPPED)
             self._tell_state()
@@ -304,7 +304,11 @@ class VrDesk(Desk):
 
     def _move_by_captures(self, run: LiveRun) -> None:
         """Let motion capture move robots, and avatars without a headset, of a run of the simulator."""
-        worn = [one.avatar for one in self.participants.values() if run.controls.get(one.avatar) is one]
+        worn = [
+            participant.avatar
+            for participant in self.participants.values()
+            if run.controls.get(participant.avatar) is participant
+        ]
         wanted = (run, self.captures.texts, tuple(worn))
         if run.state != "running" or wanted == self._captured:
             return
@@ -361,10 +365,10 @@ class VrDesk(Desk):
         if self.rooms.rooms["robot"].limits is None:
             return False
         scene = simulation.world.environment_scene(0)
-        places = [scene.position[0, one.agent] for one in simulation.robots if scene.active[0, one.agent]]
+        places = [scene.position[0, robot.agent] for robot in simulation.robots if scene.active[0, robot.agent]]
         margins = [self.rooms.margin("robot", *place.tolist()) or 0.0 for place in places]
         self._robot_margin = min(margins, default=None)
-        return any(one < MARGIN for one in margins)
+        return any(margin < MARGIN for margin in margins)
 
     def _stop_at_limits(self, run: LiveRun) -> None:
         """Stop the robots if one of them is near the limits of its room."""
@@ -382,10 +386,10 @@ class VrDesk(Desk):
     @property
     def simulator(self) -> SimulatorDesk:
         """The simulator tab of the session."""
-        found = self.session.desk("simulator") if isinstance(self.session, AppSession) else None
-        if not isinstance(found, SimulatorDesk):
+        simulator_desk = self.session.desk("simulator") if isinstance(self.session, AppSession) else None
+        if not isinstance(simulator_desk, SimulatorDesk):
             raise InputError("virtual reality needs the simulator tab")
-        return found
+        return simulator_desk
 
     @property
     def experiment(self) -> ExperimentDesk | None:
@@ -449,21 +453,21 @@ class VrDesk(Desk):
             self._in_experiment = opened
             with contextlib.suppress(InputError):
                 run = self.simulator.run
-                for one in self.participants.values():
-                    if run.controls.get(one.avatar) is one:
-                        del run.controls[one.avatar]
+                for participant in self.participants.values():
+                    if run.controls.get(participant.avatar) is participant:
+                        del run.controls[participant.avatar]
                 if opened:
                     self.simulator.pause()
             names = self._experiment_avatars() if opened else self._simulator_avatars()
             people, self.participants = list(self.participants.values()), {}
-            for one in people:
+            for person in people:
                 free = [name for name in names if name not in self.participants]
-                if one.avatar not in free and free:
-                    one.move_to(free[0])
-                self.participants[one.avatar] = one
-                self._discard_recording(one)
+                if person.avatar not in free and free:
+                    person.move_to(free[0])
+                self.participants[person.avatar] = person
+                self._discard_recording(person)
                 if not opened:
-                    one.record_to(self._recorder())
+                    person.record_to(self._recorder())
             if not opened:
                 self.bodies.clear()  # the next participant has another size
         self._tell_state()
@@ -472,16 +476,16 @@ class VrDesk(Desk):
         """Give the avatars of a trial of the experiment to the participants, and record them in its folder."""
         self.follow_experiment()
         with self._lock:
-            if not any(one.source == "external" for one in trial.avatars):
+            if not any(avatar.source == "external" for avatar in trial.avatars):
                 return trial, ()
             stop = RobotStop()
             stop.set = self._stop.set
             trial = with_bodies(trial, self.bodies)
             self._stop = stop
             self._seats = TrialSeats(trial, folder, stop, self._near_limits)
-            self._warnings = {one for one in self._warnings if not one.startswith(("paused", "tracking"))}
-            for one in self.participants.values():
-                self._take_seat(self._seats, one)
+            self._warnings = {warning for warning in self._warnings if not warning.startswith(("paused", "tracking"))}
+            for participant in self.participants.values():
+                self._take_seat(self._seats, participant)
             self._seats.capture(self.captures_of(trial, self._seats.avatars))
             return trial, [self._seats]
 
@@ -498,21 +502,21 @@ class VrDesk(Desk):
         if seats is None:
             return []
         moved = {*seats.avatars, *self.captures.targets}
-        rest = [one for one in seats.trial.avatars if one.source == "external" and one.name not in moved]
+        rest = [avatar for avatar in seats.trial.avatars if avatar.source == "external" and avatar.name not in moved]
         ways = {True: "a headset or motion capture", False: "motion capture"}
-        return [f"nothing moves {one.name!r}: it needs {ways[one.headset]}" for one in rest]
+        return [f"nothing moves {item.name!r}: it needs {ways[item.headset]}" for item in rest]
 
     @web.command
     def set(self, settings: dict[str, Any]) -> None:
         """Change settings: delays and noise [s], [m], timeout, and whether a run pauses when tracking is lost."""
-        known = {one.name for one in dataclasses.fields(StreamSettings)}
+        known = {field.name for field in dataclasses.fields(StreamSettings)}
         unknown = [name for name in settings if name not in known]
         if unknown:
             raise InputError(f"setting {unknown[0]!r} does not exist; settings are {', '.join(sorted(known))}")
         with self._lock:
             self.settings = dataclasses.replace(self.settings, **settings)
-            for one in self.participants.values():
-                one.apply(self.settings)
+            for participant in self.participants.values():
+                participant.apply(self.settings)
             self._note_all({"settings": dataclasses.asdict(self.settings)})
         self._tell_state()
 
@@ -524,7 +528,7 @@ class VrDesk(Desk):
         """
         with self._lock:
             person = self._participant(avatar)
-            found = [one for one in person.history(TOUCH) if getattr(one, side, None) is not None]
+            found = [item for item in person.history(TOUCH) if getattr(item, side, None) is not None]
             if side not in ("left", "right") or not found:
                 raise InputError(f"the {side} controller or hand of {avatar!r} is not tracked")
             rows = [getattr(one, side)[:3].tolist() for one in found]
@@ -541,7 +545,7 @@ class VrDesk(Desk):
         """
         with self._lock:
             person = self._participant(avatar)
-            heights = [float(one.head[2]) for one in person.history(TOUCH) if one.head is not None]
+            heights = [float(item.head[2]) for item in person.history(TOUCH) if item.head is not None]
             if len(heights) < TOUCH:
                 raise InputError(f"the headset of {avatar!r} was not tracked for long enough; stand upright and wait")
             body, ratio = self._body_of(avatar)
@@ -558,9 +562,9 @@ class VrDesk(Desk):
         """Measure a participant in a T or A pose; the avatar gets this size as in :meth:`measure_body`."""
         with self._lock:
             person = self._participant(avatar)
-            found = measure_pose(person.history(TOUCH + 10), self._body_of(avatar)[0])
-            self._wear(person, found)
-        return found
+            body_measure = measure_pose(person.history(TOUCH + 10), self._body_of(avatar)[0])
+            self._wear(person, body_measure)
+        return body_measure
 
     def _wear(self, person: VrParticipant, measure: BodyMeasure) -> None:
         self.bodies[person.avatar] = measure
@@ -571,8 +575,8 @@ class VrDesk(Desk):
     def _body_of(self, avatar: str) -> tuple[str, float]:
         """Return the name of the body of an avatar, and its stature over the height of its eyes."""
         if self._in_experiment:
-            specs = [one for trial in self._experiment_trials() for one in trial.avatars if one.name == avatar]
-            name = next((one.body for one in specs if one.body), "mannequin")
+            specs = [item for trial in self._experiment_trials() for item in trial.avatars if one.name == avatar]
+            name = next((spec.body for spec in specs if spec.body), "mannequin")
             size = BodySize.of(People.of([name]))
         else:
             run = self.simulator.run
@@ -586,7 +590,7 @@ class VrDesk(Desk):
             return
         person.suit = self.suit_of(person.avatar)
         seats.capture(self.captures_of(seats.trial, seats.avatars))
-        own = next(one for one in seats.trial.avatars if one.name == person.avatar)
+        own = next(avatar for avatar in seats.trial.avatars if avatar.name == person.avatar)
         room = self.rooms.room(person.room)
         room.guess_place(own.x, own.y, own.heading)
         self._note(person, {"avatar": person.avatar, "trial": seats.trial.name, "room": room.state(),
@@ -594,13 +598,13 @@ class VrDesk(Desk):
 
     def _room_of(self, avatar: str) -> str:
         """Return the name of the room of the participant who moves an avatar; a second headset has its own origin."""
-        taken = any(one.room == PERSON for one in self.participants.values())
+        taken = any(participant.room == PERSON for participant in self.participants.values())
         if avatar not in self._room_names or (taken and self._room_names[avatar] == PERSON):
             self._room_names[avatar] = self.rooms.add_person(avatar) if taken else PERSON
         return self._room_names[avatar]
 
     def _attach(self, run: LiveRun, person: VrParticipant) -> None:
-        avatars = {one.name: one for one in run.trial.avatars if one.name in external_avatars(run.trial)}
+        avatars = {avatar.name: avatar for avatar in run.trial.avatars if avatar.name in external_avatars(run.trial)}
         if person.avatar not in avatars:
             return
         own, room = avatars[person.avatar], self.rooms.room(person.room)
@@ -639,10 +643,10 @@ class VrDesk(Desk):
     def save(self, name: str) -> list[str]:
         """Save the episode as NAME.mcap and the raw messages of each participant as NAME-AVATAR.headset."""
         saved = [self.simulator.save(name)]
-        for one in list(self.participants.values()):
-            if one.recorder is not None and not self._in_experiment:
-                target = f"{saved[0].removesuffix('.mcap')}-{one.avatar}.headset"
-                shutil.copyfile(one.recorder.path, self.session.workspace.writable(target))
+        for participant in list(self.participants.values()):
+            if participant.recorder is not None and not self._in_experiment:
+                target = f"{saved[0].removesuffix('.mcap')}-{participant.avatar}.headset"
+                shutil.copyfile(participant.recorder.path, self.session.workspace.writable(target))
                 saved.append(target)
         return saved
 
@@ -668,8 +672,8 @@ class VrDesk(Desk):
             recorder.note(time.monotonic(), values)
 
     def _note_all(self, values: dict[str, Any]) -> None:
-        for one in self.participants.values():
-            self._note(one, values)
+        for participant in self.participants.values():
+            self._note(participant, values)
 
     @web.command
     def add_capture(self, capture: str) -> None:
@@ -710,7 +714,7 @@ class VrDesk(Desk):
 
     def capture_states(self) -> list[dict[str, Any]]:
         """Return each binding with number, rate, losses and age of its samples, JSON."""
-        found = []
+        result = []
         for text, binding in self.captures.bindings.items():
             target, known = binding.target, self.captures.stream_of(binding.target)
             if known is None:
@@ -718,11 +722,11 @@ class VrDesk(Desk):
             stream, subject = known
             counts, latency = stream.statistics(subject), stream.latency()
             age = None if latency is None else round(1e3 * latency[0], 1)
-            found.append(
+            result.append(
                 {"capture": text, "target": target, "samples": counts.samples, "rate": round(counts.rate, 1),
                  "lost": counts.lost, "refused": counts.refused, "reason": counts.reason, "age": age}
             )  # fmt: skip
-        return found
+        return result
 
     def suit_of(self, avatar: str) -> Suit | None:
         """Return the suit of a participant with a headset, or None."""
@@ -774,10 +778,10 @@ class VrDesk(Desk):
         """Compute the place of a room from its points; returns it with the residuals."""
         with self._lock:
             self.rooms.calibrate(room)
-            found = self.rooms.room(room).state()
-            self._note_all({"calibration": {"room": room, **found}})
+            result = self.rooms.room(room).state()
+            self._note_all({"calibration": {"room": room, **result}})
         self._tell_state()
-        return found
+        return result
 
     @web.command
     def place_room(self, room: str, x: float, y: float, heading: float = 0.0) -> None:

@@ -58,46 +58,46 @@ class AvatarContacts:
         Each has ``kind`` and ``number`` of the other body, ``limb``, ``side`` (``left``, ``right`` or empty), ``force``
         [N], ``point`` [m] or null, ``begins`` (whether there was none in the step before), ``strength`` from 0 to 1.
         """
-        found = self._forces(simulation) or self._overlaps(simulation)
+        result = self._forces(simulation) or self._overlaps(simulation)
         self._velocity = simulation.world.environment_scene(0).velocity[0].copy()
-        keys = {(one["kind"], one["number"], one["limb"]) for one in found}
-        for one in found:
+        keys = {(one["kind"], one["number"], one["limb"]) for one in result}
+        for one in result:
             one["begins"] = (one["kind"], one["number"], one["limb"]) not in self._held
         self._held = keys
-        return found
+        return result
 
     def _forces(self, simulation: Simulation) -> list[dict[str, Any]]:
-        found = []
-        for one in simulation.world.forces_of(0):
-            pair = (one.first, one.second)
-            if not any(body.kind == "person" and body.number == self.agent for body in pair) or one.force <= 0.0:
+        forces = []
+        for item in simulation.world.forces_of(0):
+            pair = (item.first, item.second)
+            if not any(body.kind == "person" and body.number == self.agent for body in pair) or item.force <= 0.0:
                 continue
             own = pair.index(next(body for body in pair if body.kind == "person" and body.number == self.agent))
             other = pair[1 - own]
-            limb = one.limb
+            limb = item.limb
             side = {"_l": "left", "_r": "right"}.get(limb[-2:], "")
-            strength = min(1.0, max(WEAKEST, one.force / STRONG))
-            found.append(
+            strength = min(1.0, max(WEAKEST, item.force / STRONG))
+            forces.append(
                 {"kind": other.kind, "number": int(other.number), "limb": limb, "side": side,
-                 "force": round(float(one.force), 2), "point": [round(float(k), 4) for k in one.point],
+                 "force": round(float(item.force), 2), "point": [round(float(k), 4) for k in item.point],
                  "strength": round(strength, 3)}
             )  # fmt: skip
-        return found
+        return forces
 
     def _overlaps(self, simulation: Simulation) -> list[dict[str, Any]]:
         ids = simulation.world.ids[0].tolist()
         own = ids[self.agent]
-        found = []
-        for one in simulation.contacts():
-            if one.other != own:
+        overlaps = []
+        for contact in simulation.contacts():
+            if contact.other != own:
                 continue
-            force = self._impact(simulation, ids.index(one.robot))
+            force = self._impact(simulation, ids.index(contact.robot))
             strength = round(min(1.0, max(WEAKEST, force / STRONG)), 3)
-            found.append(
-                {"kind": "robot", "number": int(one.robot), "limb": "", "side": "", "force": round(force, 2),
+            overlaps.append(
+                {"kind": "robot", "number": int(contact.robot), "limb": "", "side": "", "force": round(force, 2),
                  "point": None, "strength": strength}
             )  # fmt: skip
-        return found
+        return overlaps
 
     def _impact(self, simulation: Simulation, robot: int) -> float:
         """Return the peak force [N] of an impact at the closing speed before or after the last step."""
@@ -108,7 +108,7 @@ class AvatarContacts:
         if self._velocity is not None and self._velocity.shape == scene.velocity[0].shape:
             moves.append(self._velocity)
         speed = max(float((move[robot] - move[self.agent]) @ normal) for move in moves)
-        mass = next(float(one.robot.mass) for one in simulation.robots if one.agent == robot)
+        mass = next(float(item.robot.mass) for item in simulation.robots if item.agent == robot)
         return two_body_force(speed, mass, REGION)
 
 
@@ -294,7 +294,7 @@ class VrParticipant:
         self._estimator = BodyEstimator(BodySize.of(people, number))
         self._figure, self._dressed = (people, number), None
         self._contacts = AvatarContacts(agent)
-        spec = next(one for one in simulation.trial.avatars if one.name == self.avatar)
+        spec = next(avatar for avatar in simulation.trial.avatars if avatar.name == self.avatar)
         with self._lock:
             self.stream.trial_delay, self.stream.trial_noise = spec.delay, spec.noise
             self._picture_delay = spec.picture_delay

@@ -225,9 +225,9 @@ class VrServer(AppServer):
         return app
 
     def _refusal(self, request: web.Request) -> str | None:
-        found = super()._refusal(request)
-        if found is None or not self._opens_headset(request):
-            return found
+        refusal = super()._refusal(request)
+        if refusal is None or not self._opens_headset(request):
+            return refusal
         return self.access.refusal(request.headers.get("Host"), request.headers.get("Origin"), self.access.token)
 
     def _cookie(self, request: web.Request) -> str:

@@ -100,12 +100,12 @@ class DegradedTracks:
         own = self.tracks
         id, frame = columns.get("id", own.id), columns.get("frame", own.frame)
         order = np.lexsort((id, frame))  # the order in which Trajectories will put the rows
-        here = {int(one) for one in np.unique(id)}
+        here = {int(item) for item in np.unique(id)}
         tracks = dataclasses.replace(
             own,
             **columns,
             robots=own.robots & here,
-            labels={one: label for one, label in own.labels.items() if one in here},
+            labels={item: label for item, label in own.labels.items() if item in here},
             scenes=tuple(scene for scene in own.scenes if scene.person in here),
         )
         return DegradedTracks(tracks, (self.truth if truth is None else truth)[order])
@@ -164,7 +164,7 @@ class Degradation(ABC):
         for field in dataclasses.fields(self):
             value, unit = getattr(self, field.name), units.get(field.name, "1")
             values = value if isinstance(value, tuple) else (value,)
-            word = ",".join(f"{one:g}" if isinstance(one, float) else str(one) for one in values)
+            word = ",".join(f"{value:g}" if isinstance(value, float) else str(value) for value in values)
             found[field.name] = word if unit == "1" else f"{word} {unit}"
         return found if level else {name: word for name, word in found.items() if name != self.level}
 

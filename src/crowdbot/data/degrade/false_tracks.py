@@ -59,12 +59,12 @@ class FalseTracks(Degradation):
 
     def _ghosts(self, seconds: float, rng: np.random.Generator) -> list[Ghost]:
         """Return birth [s], life [s], place in the area (0 to 1) and velocity [m/s] of every false track."""
-        found: list[Ghost] = []
+        ghosts: list[Ghost] = []
         birth = 0.0
         while True:
             birth += float(rng.exponential()) / self.rate
             life = self.life * float(rng.exponential())
             begin, velocity = rng.random(2), self.speed / math.sqrt(2.0) * rng.standard_normal(2)
             if birth >= seconds:
-                return found
-            found.append((birth, life, begin, velocity))
+                return ghosts
+            ghosts.append((birth, life, begin, velocity))

@@ -58,16 +58,16 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
 
 def _rows(name: str, text: str, columns: Sequence[str]) -> list[dict[str, str]]:
     """Return the rows of a table as words by column; it has the given columns, perhaps others."""
-    found = list(csv.DictReader(io.StringIO(text, newline="")))
-    if not found:
+    rows = list(csv.DictReader(io.StringIO(text, newline="")))
+    if not rows:
         raise DataError(f"{name} has no rows")
-    missing = [column for column in columns if column not in found[0]]
+    missing = [column for column in columns if column not in rows[0]]
     if missing:
         raise DataError(f"{name} has no column {missing[0]}")
-    for number, row in enumerate(found, 2):
+    for number, row in enumerate(rows, 2):
         if None in row or None in row.values():
             raise DataError(f"{name} line {number} has another number of columns than the line of names")
-    return found
+    return rows
 
 
 def _beside(path: Path, end: str, *names: str) -> list[dict[str, str]]:

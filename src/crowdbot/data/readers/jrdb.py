@@ -55,11 +55,11 @@ def _rows(name: str, boxes: list[dict[str, Any]]) -> list[tuple[int, str, int, f
     number = NUMBER.search(name)
     if number is None:
         raise ValueError(f"the point cloud {name!r} has no number")
-    found = []
+    rows = []
     for box in boxes:
         kind, _, id = str(box["label_id"]).partition(":")
-        found.append((int(number[0]), kind, int(id), float(box["box"]["cx"]), float(box["box"]["cy"])))
-    return found
+        rows.append((int(number[0]), kind, int(id), float(box["box"]["cx"]), float(box["box"]["cy"])))
+    return rows
 
 
 READER = Reader("jrdb", "JRDB 3D labels: JSON boxes by point cloud, relative to the robot", sniff, read)

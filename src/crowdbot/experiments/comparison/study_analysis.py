@@ -133,7 +133,7 @@ def write_trial_latency(folder: Path, latencies: Mapping[str, TrialLatency]) -> 
     Raises:
         InputError: the file cannot be written.
     """
-    text = json.dumps({name: one._asdict() for name, one in latencies.items()}, indent=1, allow_nan=False)
+    text = json.dumps({name: latency._asdict() for name, latency in latencies.items()}, indent=1, allow_nan=False)
     with explain_write_errors(folder / LATENCY_FILE):
         (folder / LATENCY_FILE).write_text(text + "\n", encoding="utf-8")
 
@@ -159,7 +159,7 @@ def read_trial_latency(folder: Path, avatar: Avatar) -> TrialLatency:
         numbers = [given[name] for name in TrialLatency._fields]
     except (OSError, ValueError, AttributeError, KeyError, TypeError) as error:
         raise InputError(f"{path} is damaged: {error!r}; delete it to analyse the trial without latencies") from None
-    if not all(one is None or (isinstance(one, int | float) and math.isfinite(one)) for one in numbers):
+    if not all(number is None or (isinstance(number, int | float) and math.isfinite(number)) for number in numbers):
         raise InputError(f"{path} is damaged: a latency is not a finite number")
     return TrialLatency(*numbers)
 
@@ -220,7 +220,7 @@ class StudyAnalysis:
     @property
     def finite_measures(self) -> dict[str, Measure]:
         """The measures that are known in a trial."""
-        known = {name for one in self.trials for name, value in one.values.items() if math.isfinite(value)}
+        known = {name for trial in self.trials for name, value in trial.values.items() if math.isfinite(value)}
         return {name: measure for name, measure in self.measures.items() if name in known}
 
     def values(self, measure: str, condition: str) -> dict[int, float]:
@@ -257,8 +257,8 @@ def analyse_study(
     limits = _checked({name: measure.bound for name, measure in measures.items() if measure.compared}, bounds or {})
     rows = [row for row in everything if row["outcome"] != "not run"]
     trials = tuple(_measured(Path(folder), row, study, settling, ratings) for row in rows)
-    found = StudyAnalysis(study, measures, trials)
-    return StudyAnalysis(study, measures, trials, _tests(found, limits))
+    study_analysis = StudyAnalysis(study, measures, trials)
+    return StudyAnalysis(study, measures, trials, _tests(study_analysis, limits))
 
 
 def experiment_of(folder: Path | str) -> Experiment:
@@ -285,10 +285,12 @@ def rating_measures(experiment: Experiment) -> dict[str, Measure]:
     screens = [
         screen for block in experiment.blocks for screen in (*block.after, *(s for t in block.trials for s in t.after))
     ]
-    asked = {f"{s.name}.{one.name}": one for s in screens for one in s.questions if isinstance(one, Scale)}
+    asked = {
+        f"{s.name}.{question.name}": question for s in screens for question in s.questions if isinstance(one, Scale)
+    }
     return {
-        name: Measure(f"{name} [{one.low} to {one.high}]", RATING_BOUND * (one.high - one.low))
-        for name, one in asked.items()
+        name: Measure(f"{name} [{item.low} to {item.high}]", RATING_BOUND * (item.high - item.low))
+        for name, item in asked.items()
     }
 
 
@@ -326,8 +328,8 @@ def _latencies(recorded: RecordedTrial) -> dict[str, float]:
     """Return the measured latencies of the headset; none without one."""
     if not (recorded.folder / LATENCY_FILE).is_file():
         return {}
-    found = read_trial_latency(recorded.folder, participant_agent(recorded.trial)[0])
-    known = {"motion_latency": found.motion, "picture_latency": found.picture}
+    trial_latency = read_trial_latency(recorded.folder, participant_agent(recorded.trial)[0])
+    known = {"motion_latency": trial_latency.motion, "picture_latency": trial_latency.picture}
     return {name: value for name, value in known.items() if value is not None}
 
 

@@ -119,16 +119,16 @@ def _conditions(analysis: StudyAnalysis) -> str:
 
 def _tests(analysis: StudyAnalysis) -> str:
     rows = []
-    for one in analysis.tests:
-        test = one.test
+    for item in analysis.tests:
+        test = item.test
         verdict = "unknown" if math.isnan(test.equivalence) else "yes" if test.equivalent else "not shown"
         rows.append(
             [
-                analysis.measures[one.measure].title,
-                one.first,
-                one.second,
+                analysis.measures[item.measure].title,
+                item.first,
+                item.second,
                 f"{_number(test.difference)} [{_number(test.low)}, {_number(test.high)}]",
-                _p_value(one.corrected),
+                _p_value(item.corrected),
                 _number(test.effect),
                 f"±{test.bound:g}",
                 verdict,
@@ -162,11 +162,13 @@ def measures_figure(analysis: StudyAnalysis) -> Figure:
         axis.remove()
     for axis, (name, measure) in zip(axes.flat, shown.items(), strict=False):
         values = [analysis.values(name, condition) for condition in conditions]
-        for who in sorted({k for one in values for k in one}):
-            axis.plot([one.get(who, math.nan) for one in values], color="0.75", linewidth=0.8, marker="o", markersize=2)
-        for k, one in enumerate(values):
-            if one:
-                axis.plot(k, np.mean(list(one.values())), "D", color=COLORS[k % len(COLORS)], markersize=7)
+        for who in sorted({k for value in values for k in value}):
+            axis.plot(
+                [value.get(who, math.nan) for value in values], color="0.75", linewidth=0.8, marker="o", markersize=2
+            )
+        for k, value in enumerate(values):
+            if value:
+                axis.plot(k, np.mean(list(value.values())), "D", color=COLORS[k % len(COLORS)], markersize=7)
         axis.set_xticks(range(len(conditions)), conditions, rotation=35, ha="right", fontsize=8)
         axis.set_xlim(-0.5, len(conditions) - 0.5)
         axis.set_title(textwrap.fill(measure.title, 34), fontsize=8)
@@ -206,7 +208,7 @@ def draw_paths(trials: Sequence[TrialMeasures]) -> Figure:
         axis.remove()
     for k, (axis, condition) in enumerate(zip(axes.flat, conditions, strict=False)):
         color = COLORS[k % len(COLORS)]
-        for trial in (one for one in trials if one.condition == condition):
+        for trial in (trial for trial in trials if trial.condition == condition):
             axis.plot(*trial.curves["robot"].T, color="0.2", linewidth=1.0, linestyle="--")
             axis.plot(*trial.curves["person"].T, color=color, linewidth=0.9)
             axis.plot(*trial.curves["person"][0], "o", color=color, markersize=3)

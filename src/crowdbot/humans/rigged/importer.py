@@ -78,7 +78,7 @@ def read_character(file: GltfFile) -> Character:
 def _owners(nodes: list[Mapping[str, Any]], bone_node: dict[str, int], names: list[str]) -> Ints:
     """Return the bone ``[N]`` that each node moves with, -1 for none."""
     every = shapes()
-    found = np.full(len(nodes), -1, dtype=np.int64)
+    owners = np.full(len(nodes), -1, dtype=np.int64)
     exact = {node: every.bone(bone) for bone, node in bone_node.items()}
     hands = {every.bone(f"hand_{side}"): side for side in "lr"}
     below = {child for node in nodes for child in node.get("children", ())}
@@ -86,16 +86,16 @@ def _owners(nodes: list[Mapping[str, Any]], bone_node: dict[str, int], names: li
     while todo:
         k, bone, deep = todo.pop()
         bone = exact.get(k, bone)
-        found[k] = bone
+        owners[k] = bone
         if bone in hands and k not in exact:
             deep += 1
             thumb = re.search(r"(?i)thumb|finger0\d*$", names[k]) is not None
             first = f"thumb_{hands[bone]}" if thumb else f"fingers_0{min(deep, 2)}_{hands[bone]}"
-            found[k] = every.bone(first)
+            owners[k] = every.bone(first)
         else:
             deep = 0
         todo += [(child, bone, deep) for child in nodes[k].get("children", ())]
-    return found
+    return owners
 
 
 def _joined(
@@ -150,14 +150,14 @@ def _add_fingers(places: dict[str, Floats], frames: Floats, owner: Ints, nodes: 
 def _primitives(file: GltfFile, mesh: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return the primitives of triangles of a mesh."""
     rows = mesh.get("primitives", [])
-    if not isinstance(rows, list) or not all(isinstance(one, dict) for one in rows):
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise InputError(f"{file.name}: primitives of a mesh must be a list of objects")
-    for one in rows:
-        if not isinstance(one.get("attributes"), dict) or "POSITION" not in one["attributes"]:
+    for row in rows:
+        if not isinstance(row.get("attributes"), dict) or "POSITION" not in row["attributes"]:
             raise InputError(f"{file.name}: a primitive has no POSITION")
-        if one.get("mode", 4) not in (0, 1, 2, 3, 4):
+        if row.get("mode", 4) not in (0, 1, 2, 3, 4):
             raise InputError(f"{file.name}: triangle strips and fans are not supported; save it with triangles")
-    return [one for one in rows if one.get("mode", 4) == 4]
+    return [row for row in rows if row.get("mode", 4) == 4]
 
 
 def _placed(
@@ -231,8 +231,8 @@ def _coordinates(file: GltfFile, primitive: Mapping[str, Any], count: int) -> Fl
     name = f"TEXCOORD_{layer}"
     if name not in primitive["attributes"]:
         return np.zeros((count, 2))
-    found = _columns(file, primitive["attributes"][name], 2, count)
-    return np.clip(np.nan_to_num(found), -1e3, 1e3)
+    columns = _columns(file, primitive["attributes"][name], 2, count)
+    return np.clip(np.nan_to_num(columns), -1e3, 1e3)
 
 
 def _columns(file: GltfFile, number: Any, wide: int, count: int | None) -> Floats:
@@ -247,7 +247,7 @@ def _columns(file: GltfFile, number: Any, wide: int, count: int | None) -> Float
 
 def _numbers(file: GltfFile, row: Mapping[str, Any], key: str) -> list[int]:
     value = row.get(key, [])
-    if not isinstance(value, list) or not all(isinstance(one, int) and not isinstance(one, bool) for one in value):
+    if not isinstance(value, list) or not all(isinstance(item, int) and not isinstance(item, bool) for item in value):
         raise InputError(f"{file.name}: {key} of a skin must be a list of whole numbers")
     return value
 
@@ -493,7 +493,7 @@ def _frame(first: Floats, second: Floats) -> Floats:
 
 def _between(first: Floats, second: Floats) -> Floats:
     """Return the smallest rotation from one direction to another."""
-    a, b = (one / max(float(np.linalg.norm(one)), 1e-9) for one in (first, second))
+    a, b = (item / max(float(np.linalg.norm(item)), 1e-9) for item in (first, second))
     v, c = np.cross(a, b), float(a @ b)
     cross = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
     return np.asarray(np.eye(3) + cross + cross @ cross / max(1.0 + c, 1e-6))

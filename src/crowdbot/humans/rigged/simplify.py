@@ -53,14 +53,14 @@ class EdgeCollapse:
 
     def _quadrics(self, points: Floats, faces: Ints, care: Floats) -> Floats:
         """Return the quadrics ``[V, 10]`` of all points, and note the lines that are held."""
-        found = np.zeros((len(points), 10))
+        quadrics = np.zeros((len(points), 10))
         a, b, c = (points[faces[:, k]] for k in range(3))
         normal = np.cross(b - a, c - a)
         size = np.linalg.norm(normal, axis=1, keepdims=True)
         normal = normal / np.maximum(size, 1e-12)
         for k in range(3):
             weight = size[:, 0] * care[faces[:, k]]
-            np.add.at(found, faces[:, k], weight[:, None] * _planes(normal, a))
+            np.add.at(quadrics, faces[:, k], weight[:, None] * _planes(normal, a))
         edges: dict[tuple[int, int], list[int]] = {}
         for f, face in self.faces.items():
             for k in range(3):
@@ -77,9 +77,9 @@ class EdgeCollapse:
                 long = np.linalg.norm(aside)
                 if long > 1e-12:
                     plane = _planes((aside / long)[None], points[i][None])[0] * BORDER * float(edge @ edge)
-                    found[i] += plane
-                    found[j] += plane
-        return found
+                    quadrics[i] += plane
+                    quadrics[j] += plane
+        return quadrics
 
     def _around(self, v: int) -> set[int]:
         return {w for f in self.of[v] for w in self.faces[f]} - {v}

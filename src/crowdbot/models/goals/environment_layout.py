@@ -218,21 +218,21 @@ class EnvironmentLayout(Goal):
 
 def _segments(exits: Any) -> Floats:
     """Return exits as segments ``[G, 2, 2]`` [m]."""
-    found = np.asarray(exits, dtype=np.float64)
-    if found.ndim == 1 and found.size % 2 == 0:
-        found = found.reshape(-1, 2)
-    if found.ndim == 2 and found.shape[1] == 2:
-        found = np.stack([found, found], axis=1)
-    if found.size == 0:
+    segments = np.asarray(exits, dtype=np.float64)
+    if segments.ndim == 1 and segments.size % 2 == 0:
+        segments = segments.reshape(-1, 2)
+    if segments.ndim == 2 and segments.shape[1] == 2:
+        segments = np.stack([segments, segments], axis=1)
+    if segments.size == 0:
         raise InputError(
             "environment-layout: the layout has no exit; give exits as points, or an area with an opening in its border"
         )
-    if found.ndim != 3 or found.shape[1:] != (2, 2) or not np.all(np.isfinite(found)):
+    if segments.ndim != 3 or segments.shape[1:] != (2, 2) or not np.all(np.isfinite(segments)):
         raise InputError(
-            f"environment-layout: exits have shape {list(found.shape)}; they must be finite points [G, 2] or"
+            f"environment-layout: exits have shape {list(segments.shape)}; they must be finite points [G, 2] or"
             " segments [G, 2, 2] in metres"
         )
-    return found
+    return segments
 
 
 def _ring(area: Any) -> Floats:

@@ -110,8 +110,8 @@ class HeadwayLayer(CrowdModel):
     @property
     def model(self) -> CrowdModel:
         """The model under the layer."""
-        found: CrowdModel = self.__dict__["_model"]
-        return found
+        crowd_model: CrowdModel = self.__dict__["_model"]
+        return crowd_model
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
@@ -236,7 +236,7 @@ def with_headway(kind: type[CrowdModel]) -> type[CrowdModel]:
     if clash := {field.name for field in dataclasses.fields(kind)} & {*HeadwayLayer.__dataclass_fields__}:
         raise InputError(f"{name} is not a model: both have a parameter {min(clash)}")
     hints = typing.get_type_hints(kind)
-    fields = [(one.name, hints[one.name], copy_field(one)) for one in dataclasses.fields(kind) if one.init]
+    fields = [(field.name, hints[field.name], copy_field(field)) for field in dataclasses.fields(kind) if field.init]
     return make_class(name, fields, kind, _description(kind))
 
 
@@ -268,8 +268,8 @@ def copy_field(field: dataclasses.Field[Any], **changes: Any) -> Any:
 
 def arguments_of(kind: type) -> str:
     """Return the list of parameters in the docstring of a model, with its indentation; empty if there is none."""
-    found = re.search(r"^Args:\n((?:[ ]{4}.*\n|\n(?=[ ]{4}))+)", (inspect.getdoc(kind) or "") + "\n", re.MULTILINE)
-    return found[1].rstrip("\n") if found else ""
+    match = re.search(r"^Args:\n((?:[ ]{4}.*\n|\n(?=[ ]{4}))+)", (inspect.getdoc(kind) or "") + "\n", re.MULTILINE)
+    return match[1].rstrip("\n") if match else ""
 
 
 def find_layered(name: str, find: Callable[[str], type]) -> type | None:
@@ -297,5 +297,5 @@ def _restore(base: type[CrowdModel], name: str, values: dict[str, Any]) -> Crowd
     if name.endswith(HeadwayLayer.suffix):
         return with_headway(base)(**values)
     models = importlib.import_module("crowdbot.models")
-    found: CrowdModel = getattr(models, name)(**values)
-    return found
+    crowd_model: CrowdModel = getattr(models, name)(**values)
+    return crowd_model

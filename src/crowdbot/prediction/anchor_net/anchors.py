@@ -223,4 +223,4 @@ def _start(points: Floats, count: int, rng: np.random.Generator) -> Floats:
 
 
 def _squared_distances(points: Floats, place: Floats) -> Floats:
-    return np.asarray(np.stack([((points - one) ** 2).sum(axis=1) for one in place], axis=1))
+    return np.asarray(np.stack([((points - item) ** 2).sum(axis=1) for item in place], axis=1))

@@ -38,7 +38,7 @@ def calibrate_confidence(numbers: Numbers, material: TrainingSet) -> Numbers:
     K, D = held["centres"].shape
     bend = held["centres"] + out[:, : D * K].reshape(-1, K, D) * held["spread"]
     score, spread = out[:, D * K : D * K + K], np.clip(held["width"] + out[:, None, -D:], -6.0, 2.0)
-    nearest = np.array([_nearest(one @ held["basis"], truth) for one, truth in zip(bend, missed, strict=True)])
+    nearest = np.array([_nearest(item @ held["basis"], truth) for item, truth in zip(bend, missed, strict=True)])
     truth = missed.reshape(len(missed), -1) @ held["basis"].T
     z2 = ((truth[:, None] - bend) / held["spread"] * np.exp(-spread)) ** 2
     kind = speed_class(material.people.past)

@@ -32,7 +32,7 @@ def add_products(
         away: ``[N, K, T, 2]`` [m] from the trajectory to each future.
     """
     N, D, T, _ = arm.shape
-    found = np.zeros((N, T, 2, 2))
+    products = np.zeros((N, T, 2, 2))
     for n in range(N):
         for d in range(D):
             variance = 0.0
@@ -41,13 +41,13 @@ def add_products(
             for t in range(T):
                 for x in range(2):
                     for y in range(2):
-                        found[n, t, x, y] += variance * arm[n, d, t, x] * arm[n, d, t, y]
+                        products[n, t, x, y] += variance * arm[n, d, t, x] * arm[n, d, t, y]
         for k in range(probability.shape[1]):
             for t in range(T):
                 for x in range(2):
                     for y in range(2):
-                        found[n, t, x, y] += probability[n, k] * away[n, k, t, x] * away[n, k, t, y]
-    return found
+                        products[n, t, x, y] += probability[n, k] * away[n, k, t, x] * away[n, k, t, y]
+    return products
 
 
 def future_covariances(

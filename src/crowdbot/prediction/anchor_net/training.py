@@ -382,8 +382,8 @@ def _loss(layers: Any, fixed: dict[str, Any], shown: TrainingBatch, how: AnchorT
 
 def _plain(mean: dict[str, Any]) -> Numbers:
     """Return the layers as arrays; the weight of a layer is ``[inputs, outputs]``."""
-    found = {}
+    numbers = {}
     for name, value in mean.items():
         array = value.cpu().numpy().astype(np.float64)
-        found[name.replace(".", "_")] = array.T.copy() if name.endswith(".weight") else array
-    return found
+        numbers[name.replace(".", "_")] = array.T.copy() if name.endswith(".weight") else array
+    return numbers

@@ -126,8 +126,8 @@ def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> Tr
                 f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; training requires 0.4 s and metres:"
                 " set fps (25 for tracks with 10 frames per row of 0.4 s), or resample"
             )
-        for one in (tracks, reverse_time(tracks)) if reverse else (tracks,):
-            parts.append(_people(*one.windows()))
+        for item in (tracks, reverse_time(tracks)) if reverse else (tracks,):
+            parts.append(_people(*item.windows()))
     if not parts:
         raise InputError("there is no training recording")
     return _material(parts)
@@ -245,14 +245,14 @@ def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -
     small = how.jitter * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
     small[:, -1] = 0.0
     large = how.noise * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
-    found = np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
+    noise = np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
     if how.correlated == 0.0:
-        return found
+        return noise
     drift = rng.standard_normal((count, rows, 2))
     for row in range(1, rows):
         drift[:, row] = DRIFT * drift[:, row - 1] + math.sqrt(1.0 - DRIFT**2) * drift[:, row]
     drift = how.noise * rng.random(count)[:, None, None] * drift
-    return np.where((rng.random(count) < how.correlated)[:, None, None], drift, found)
+    return np.where((rng.random(count) < how.correlated)[:, None, None], drift, noise)
 
 
 def _switch_identities(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:

@@ -43,7 +43,7 @@ class SceneInput(NamedTuple):
 
     def repeat(self, draws: int) -> SceneInput:
         """Return all scenes ``draws`` times, one copy after the other."""
-        return SceneInput(*(one.repeat(draws, *(1,) * (one.dim() - 1)) for one in self))
+        return SceneInput(*(item.repeat(draws, *(1,) * (item.dim() - 1)) for item in self))
 
 
 class Generator(nn.Module):

@@ -92,7 +92,7 @@ class Samples:
         """
         if not recordings:
             raise InputError("there is no training recording")
-        return cls.concatenate([cls.from_windows(*one.windows, one.name) for one in recordings])
+        return cls.concatenate([cls.from_windows(*recording.windows, recording.name) for recording in recordings])
 
     @classmethod
     def from_windows(cls, past: Windows, future: Windows, name: str = "") -> Samples:
@@ -198,9 +198,11 @@ class Samples:
             watched: validation samples: a fifth of the limits.
         """
         parts = []
-        for one in dict.fromkeys(sets):
-            own = self.select(np.isin(self.source, [place for place, other in enumerate(sets) if other == one]))
-            parts.append(own if one.limit is None else own.limit(max(1, one.limit // (WATCHED if watched else 1))))
+        for fromkey in dict.fromkeys(sets):
+            own = self.select(np.isin(self.source, [place for place, other in enumerate(sets) if other == fromkey]))
+            parts.append(
+                own if fromkey.limit is None else own.limit(max(1, fromkey.limit // (WATCHED if watched else 1)))
+            )
         source = np.concatenate([part.source for part in parts])
         return dataclasses.replace(Samples.concatenate(parts), source=source, names=self.names)
 
@@ -243,13 +245,13 @@ def leave_out(recordings: Sequence[Recording], name: str) -> tuple[list[Recordin
         InputError: no recording has this name, or none is left.
     """
     begins = tuple(begin.lower() for begin in (*FOLDS.get(name, ()), name))
-    stems = [Path(one.path).stem.lower() for one in recordings]
-    folders = [Path(one.path).parent.name.lower() for one in recordings]
+    stems = [Path(recording.path).stem.lower() for recording in recordings]
+    folders = [Path(recording.path).parent.name.lower() for recording in recordings]
     named = [_is_named(stem, begins) for stem in stems]
     if not any(named):  # obsmat.txt is in a folder with the name of the scene
         named = [_is_named(folder, begins) for folder in folders]
-    out = [one for one, is_out in zip(recordings, named, strict=True) if is_out]
-    kept = [one for one, is_out in zip(recordings, named, strict=True) if not is_out]
+    out = [recording for recording, is_out in zip(recordings, named, strict=True) if is_out]
+    kept = [recording for recording, is_out in zip(recordings, named, strict=True) if not is_out]
     if not out:
         near = did_you_mean(name, [*FOLDS, *stems])
         raise InputError(f"no recording matches {name!r}{near}; known are {', '.join(sorted(set(stems)))}")
@@ -271,14 +273,14 @@ def recordings_with_windows(recordings: Sequence[Recording]) -> tuple[list[Recor
         DataError: a recording cannot be read.
     """
     kept, left, reason = list[Recording](), list[Recording](), ""
-    for one in recordings:
+    for recording in recordings:
         try:
-            _ = one.windows
+            _ = recording.windows
         except NoWindowError as error:
-            left.append(one)
+            left.append(recording)
             reason = reason or str(error)
         else:
-            kept.append(one)
+            kept.append(recording)
     if left and not kept:
         others = f"; nor has any other of {len(left)} recordings" if len(left) > 1 else ""
         raise NoWindowError(f"{reason}{others}")
@@ -321,15 +323,15 @@ def split_in_time(recordings: Sequence[Recording], share: float, sets: Sequence[
         raise InputError(f"the validation share {share} must be above 0 and below 1")
     sides: dict[int, tuple[Samples | None, Samples | None]] = {}
     whole: list[tuple[int, Samples]] = []
-    for place, one in enumerate(recordings):
-        past, future = one.windows
+    for place, recording in enumerate(recordings):
+        past, future = recording.windows
         border = past.frame[min(len(past) - 1, int(len(past) * (1.0 - share))), 0]
         before, after = future.frame[:, -1] < border, past.frame[:, 0] >= border
         if before.any() and after.any():
-            early = Samples.from_windows(past[before], future[before], one.name)
-            sides[place] = early, Samples.from_windows(past[after], future[after], one.name)
+            early = Samples.from_windows(past[before], future[before], recording.name)
+            sides[place] = early, Samples.from_windows(past[after], future[after], recording.name)
         else:
-            whole.append((place, Samples.from_windows(past, future, one.name)))
+            whole.append((place, Samples.from_windows(past, future, recording.name)))
     if whole and len(recordings) == 1:
         raise DataError(
             f"{recordings[0].path}: {len(whole[0][1])} windows are too few for a validation share of {share:.0%}"
@@ -359,7 +361,7 @@ def _is_due(rank: int, share: float) -> bool:
 
 def short_recordings(recordings: Sequence[Recording]) -> list[str]:
     """Return a warning for each recording shorter than 3 minutes; one for all if more than three are."""
-    found = [(one.name, float(one.rest.time[-1] - one.rest.time[0])) for one in recordings]
+    found = [(recording.name, float(recording.rest.time[-1] - recording.rest.time[0])) for recording in recordings]
     short = [(name, seconds) for name, seconds in found if seconds < ENOUGH]
     if len(short) > 3:
         low, high = min(short, key=lambda one: one[1])[1], max(short, key=lambda one: one[1])[1]

@@ -177,7 +177,7 @@ class Frames:
             InputError: a covariance is not finite and positive semidefinite.
         """
         total, at = np.zeros((3, 3)), np.array([stamp], dtype=np.int64)
-        for name in (one for part in self._paths(frame, target) for one in part):
+        for name in (item for part in self._paths(frame, target) for item in part):
             edge, tree = self.odometry.get(name), self._edge(name)
             if edge is None or tree is None or edge.parent != tree.parent:
                 continue
