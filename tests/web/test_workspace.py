@@ -1,7 +1,7 @@
 """Names of trials and values come from a browser: they reach built-in trials and files of the folder, and no others."""
 
 import pytest
-from simulator_session import Windows
+from simulator_session import Windows, ready
 
 from crowdbot.core import CrowdbotError
 from crowdbot.trials import load_builtin_trial, load_trial, trial_xml
@@ -87,6 +87,7 @@ def test_no_setting_is_an_argument(outside, name, word):
 def test_a_value_of_a_running_trial_names_no_code_outside_the_folder(outside):
     desk = SimulatorDesk(Windows(outside / "files"))
     call_command(desk, "open", {"name": "own.xml", "paused": True})
+    ready(desk)
     with pytest.raises(CrowdbotError, match="outside"):
         call_command(desk, "set_value", {"path": "robot/navigator/type", "text": f"{outside}/shy.py:Shy"})
     assert not (outside / "ran").exists()
