@@ -51,6 +51,20 @@ def test_a_steered_run_replays_to_the_byte(trial, tmp_path):
     assert done.metrics["path_length"] > 0.8
 
 
+def test_the_digest_does_not_depend_on_the_name_of_the_transport(trial):
+    class Named(Driver):
+        def publish(self, messages):
+            MemoryTransport.publish(self, messages)
+            self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}}, self.name)
+
+    digests = set()
+    for name in ("rosbridge", "foxglove"):
+        transport = Named()
+        transport.name = name
+        digests.add(run_bridge(trial, [transport], 0, None, BridgeClock("free")).digest)
+    assert len(digests) == 1
+
+
 @pytest.mark.parametrize("mode", ["paced", "commands", "step", "follow"])
 def test_the_clock_does_not_change_the_result(trial, mode, tmp_path):
     free = run_bridge(trial, [Driver()], 0, tmp_path / "free", BridgeClock("free"))

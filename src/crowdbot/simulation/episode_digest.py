@@ -77,11 +77,11 @@ class EpisodeDigest:
         collisions: Sequence[BodyContactEvent],
         falls: Sequence[Fall],
     ) -> None:
-        """Add forces, orders, contact events and falls of a record, after its scene."""
+        """Add forces, orders, contact events and falls of a record, after its scene; not who asked for an order."""
         for force in forces:
             self._sum.update(f"force {_contact_text(*force)}\n".encode())
         for order in orders:
-            self._sum.update(f"order {nanoseconds} {write_order(order)}\n".encode())
+            self._sum.update(f"order {nanoseconds} {write_order(dataclasses.replace(order, source=''))}\n".encode())
         for collision in collisions:
             self._sum.update(f"collision {_contact_text(*dataclasses.astuple(collision))}\n".encode())
         for fall in falls:
