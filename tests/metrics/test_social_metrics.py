@@ -386,3 +386,30 @@ def test_ratios_to_the_empty_scene():
     assert found["relative_length"] == pytest.approx(1.0, rel=0.02)
     lost = empty_scene_ratios(dataclasses.replace(slow, success=False), empty)
     assert math.isnan(lost["relative_time"])
+
+
+BOX = np.array([[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]])
+ROUND = float(np.hypot(0.5, 0.2))
+
+
+@pytest.mark.parametrize(
+    ("outline", "turn", "intrusion", "path", "room"),
+    [
+        (None, 0.0, 1.0, 1.0, 0.8 - ROUND),
+        (BOX, 0.0, 0.0, 0.0, 0.6),  # drives along x, its side towards people and the wall
+        (BOX, np.pi / 2.0, 1.0, 1.0, 0.3),  # its front towards them
+        (BOX, np.nan, 1.0, 1.0, 0.8 - ROUND),  # a disc while its heading is unknown
+    ],
+)
+def test_groups_intended_paths_and_walls_are_met_by_the_outline(outline, turn, intrusion, path, room):
+    """People stand 0.45 and 0.9 m beside the robot, and a wall 0.8 m on the other side."""
+    steps = 4
+    pair = [walk((x, y), (0.0, 0.0), steps) for x, y in ((-0.3, 0.45), (0.3, 0.45), (0.0, 0.95))]
+    robot = walk((0.0, 0.0), (0.0, 0.0), steps)
+    log = log_of_paths(robot, *pair, groups=[(0, 1)], walls=np.array([[-5.0, -0.8, 5.0, -0.8]]), outline=outline)
+    log = dataclasses.replace(log, radius=ROUND, heading=np.full(steps + 1, turn))
+    found = log_metrics(log, ["groups", "force"])
+    assert found["group_intrusion"] == found["group_collision"] == intrusion
+    assert found["obstacle_force_on_robot"] == pytest.approx((steps + 1) * 10.0 * np.exp(-room / 0.2))
+    alone = dataclasses.replace(log_of_paths(robot, pair[2], outline=outline), radius=ROUND, heading=log.heading)
+    assert log_metrics(alone, ["comfort"])["intended_path_intrusion"] == path

@@ -99,6 +99,44 @@ def outline_clearance(
 
 
 @kernel
+def _measure_points(
+    place: Floats, heading: Floats, radius: float, points: Floats, size: Floats, corner: Floats, gap: Floats
+) -> None:
+    for t in range(len(place)):
+        last = len(corner) if math.isfinite(heading[t]) else 0
+        turn = heading[t] if last > 0 else 0.0
+        for n in range(points.shape[1]):
+            px, py = points[t, n, 0], points[t, n, 1]
+            gap[t, n] = body_gap(place[t, 0], place[t, 1], turn, radius, 0, last, px, py, 0.0, size[n], 0, 0, corner)
+
+
+def body_clearance(
+    position: Floats, heading: Floats, radius: float, outline: Floats | None, points: Floats, size: Floats
+) -> Floats:
+    """Return the clearances of discs to a robot, row by row ``[T, N]`` [m]; where its heading is unknown, it is a disc.
+
+    Args:
+        position: ``[T, 2]`` of the robot [m].
+        heading: ``[T]`` of the robot [rad], NaN if unknown.
+        radius: of the circumscribed disc of the robot [m].
+        outline: corners ``[K, 2]`` in the frame of the robot [m]; None for a disc.
+        points: centres of the discs ``[T, N, 2]`` [m].
+        size: radii of the discs ``[N]`` [m].
+
+    >>> box = np.array([[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]])
+    >>> beside = np.array([[[0.0, 1.0]]])
+    >>> body_clearance(np.zeros((1, 2)), np.zeros(1), 0.54, box, beside, np.array([0.3])).round(3).tolist()
+    [[0.5]]
+    """
+    gap = np.empty(points.shape[:2])
+    corner = np.zeros((0, 2)) if outline is None else outline
+    place, turn, other, sizes, corners = map(np.ascontiguousarray, (position, heading, points, size, corner))
+    arrays: Any = (place, turn, float(radius), other, sizes, corners, gap)
+    _measure_points(*arrays)
+    return gap
+
+
+@kernel
 def _measure_pair(
     place: Floats, heading: Floats, radius: float, other: Floats, turned: Floats, size: float, there: Bools,
     corner: Floats, first: Ints, swept: Floats, gap: Floats,

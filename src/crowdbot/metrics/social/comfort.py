@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.metrics.contacts import MARGIN, contact_stretches
+from crowdbot.metrics.outline_clearance import body_clearance
 from crowdbot.metrics.proximity import ZONES
 from crowdbot.typing import Floats
 
@@ -60,12 +61,14 @@ def personal_space_cost(log: RobotLog) -> Floats:
 
 
 def _intended_path(log: RobotLog) -> tuple[NDArray[np.bool_], Floats]:
-    """Return at which samples the robot is on anyone's intended path, and its distance to the nearest person [m]."""
+    """Return at which samples the robot is on anyone's intended path, and its clearance to the nearest person [m]."""
     ahead = INTENT_STEP * np.arange(1, INTENT_STEPS + 1)
     place = log.people_position[:, :, None] + log.people_velocity[:, :, None] * ahead[:, None]
-    away = np.hypot(*np.moveaxis(place - log.position[:, None, None], -1, 0))
-    near = away < (log.radius + log.people_radius + INTENT_SPACE)[None, :, None]
-    return (near & log.present[:, :, None]).any(axis=(1, 2)), log.nearest
+    points = place.reshape(len(log.times), -1, 2)
+    size = np.repeat(log.people_radius, INTENT_STEPS)
+    gap = body_clearance(log.position, log.heading, log.radius, log.outline, points, size)
+    near = (gap < INTENT_SPACE) & np.repeat(log.present, INTENT_STEPS, axis=1)
+    return np.asarray(near.any(axis=1)), log.nearest
 
 
 def zone_violations(log: RobotLog, reach: float) -> tuple[float, float]:

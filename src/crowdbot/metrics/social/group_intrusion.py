@@ -30,7 +30,7 @@ def group_metrics(log: RobotLog) -> dict[str, float]:
     hull, space, centre = (np.full((len(groups), len(log.times)), np.inf) for _ in range(3))
     for k, members in enumerate(groups):
         hull[k], space[k], centre[k] = _group_distances(log, members)
-    near, inside = centre.min(axis=0), hull.min(axis=0) < log.radius
+    near, inside = centre.min(axis=0), hull.min(axis=0) < 0.0
     return {
         "groups": float(len(groups)),
         "group_intrusion": float(np.mean(inside)),
@@ -74,9 +74,10 @@ def detect_groups(log: RobotLog) -> list[list[int]]:
 
 
 def _group_distances(log: RobotLog, members: Sequence[int]) -> tuple[Floats, Floats, Floats]:
-    """Return the distances of the robot's centre to hull, edge of the circle of members and centre of a group ``[T]``.
+    """Return the clearance of the robot to the hull of a group, and the distances of its centre to the edge of the
+    circle of members and to the centre ``[T]``.
 
-    Infinite while fewer than two members are present; the distance to the edge is negative inside.
+    Infinite while fewer than two members are present; the first two are negative inside.
     """
     here = log.present[:, members]
     place = log.people_position[:, members]
@@ -88,8 +89,19 @@ def _group_distances(log: RobotLog, members: Sequence[int]) -> tuple[Floats, Flo
     edge = away - ring.sum(axis=1) / np.maximum(1, count)
     hull = np.full(len(log.times), np.inf)
     for k in np.flatnonzero(ok & (away < ring.max(axis=1) + log.radius)).tolist():
-        hull[k] = distance_to_hull(log.position[k], place[k, here[k]])
+        hull[k] = _hull_clearance(log, k, place[k, here[k]])
     return hull, np.where(ok, edge, np.inf), np.where(ok, away, np.inf)
+
+
+def _hull_clearance(log: RobotLog, row: int, members: Floats) -> float:
+    """Return the clearance [m] of the robot to the hull of the centres of members ``[N, 2]``; negative if they meet."""
+    if log.outline is None or not math.isfinite(log.heading[row]):
+        return distance_to_hull(log.position[row], members) - log.radius
+    cos, sin = math.cos(log.heading[row]), math.sin(log.heading[row])
+    corners = log.position[row] + log.outline @ np.array([[cos, sin], [-sin, cos]])
+    # two convex shapes are as far apart as the origin is from the hull of the differences of their corners
+    away = distance_to_hull(np.zeros(2), (members[:, None] - corners).reshape(-1, 2))
+    return away if away > 0.0 else -1.0
 
 
 def distance_to_hull(point: Floats, corners: Floats) -> float:

@@ -16,7 +16,8 @@ from crowdbot.metrics.agent_states import AgentLog
 from crowdbot.metrics.contacts import ContactEvent, contact_events
 from crowdbot.metrics.motion import STALL_SPEED
 from crowdbot.metrics.outline_clearance import OutlineClearance, outline_clearance
-from crowdbot.typing import Bools, Floats
+from crowdbot.metrics.step_clearance import step_outline_wall_clearance, step_wall_clearance
+from crowdbot.typing import Bools, Floats, Ints
 
 from .body_region import BodyRegion
 
@@ -212,6 +213,26 @@ class RobotLog:
     def nearest(self) -> Floats:
         """Clearance of the nearest person ``[T]`` [m]; infinite without people."""
         return np.asarray(self.gap.min(axis=1, initial=math.inf))
+
+    @functools.cached_property
+    def wall_clearance(self) -> Floats:
+        """Clearance to the nearest wall ``[T]`` [m]; that of the disc where the heading is unknown."""
+        return self._wall_clearance(np.arange(len(self.times)))
+
+    @functools.cached_property
+    def least_wall_clearance(self) -> Floats:
+        """Smallest clearance to a wall since the sample before ``[T]`` [m], as :attr:`wall_clearance`."""
+        return self._wall_clearance(np.maximum(np.arange(len(self.times)) - 1, 0))
+
+    def _wall_clearance(self, since: Ints) -> Floats:
+        size, before, after = np.full(len(self.times), self.radius), self.position[since], self.position
+        disc = step_wall_clearance(before, after, size, self.walls)
+        if self.outline is None:
+            return disc
+        known = np.isfinite(self.heading) & np.isfinite(self.heading[since])
+        turn = np.where(np.isfinite(self.heading), self.heading, 0.0)
+        outline = step_outline_wall_clearance(before, turn[since], after, turn, size, self.outline, self.walls)
+        return np.where(known, outline, disc)
 
     @functools.cached_property
     def ttc(self) -> Floats:

@@ -22,7 +22,7 @@ def force_metrics(log: RobotLog) -> dict[str, float]:
     on_people = np.where(here, social_force(-away, -drift), 0.0)
     on_robot = np.where(here, social_force(away, drift), 0.0).sum(axis=1)
     people = np.hypot(on_people[..., 0], on_people[..., 1])
-    robot, wall = np.hypot(*on_robot.T), np.hypot(*_wall_force(log).T)
+    robot, wall = np.hypot(*on_robot.T), OBSTACLE_FACTOR * np.exp(-log.wall_clearance / OBSTACLE_SIGMA)
     return {
         "social_force_on_people": float(people.sum()),
         "max_social_force_on_person": float(people.max(initial=0.0)),
@@ -55,20 +55,3 @@ def social_force(away: Floats, drift: Floats) -> Floats:
     slow = -np.exp(-distance / reach - (N_PRIME * reach * angle) ** 2)
     turn = -np.sign(angle) * np.exp(-distance / reach - (N * reach * angle) ** 2)
     return np.asarray(FACTOR * (slow[..., None] * along + turn[..., None] * left))
-
-
-def _wall_force(log: RobotLog) -> Floats:
-    """Return the force of the nearest point of the walls ``[T, 2]`` [m/s2]."""
-    if not len(log.walls):
-        return np.zeros_like(log.position)
-    start, end = log.walls[None, :, :2], log.walls[None, :, 2:]
-    way, here = end - start, log.position[:, None]
-    length2 = np.maximum(1e-12, np.sum(way**2, axis=-1))
-    share = np.clip(np.sum((here - start) * way, axis=-1) / length2, 0.0, 1.0)
-    away = here - (start + share[..., None] * way)
-    distance = np.hypot(away[..., 0], away[..., 1])
-    k = np.argmin(distance, axis=1)
-    rows = np.arange(len(log.times))
-    near = distance[rows, k]
-    size = OBSTACLE_FACTOR * np.exp(-(near - log.radius) / OBSTACLE_SIGMA)
-    return np.asarray(away[rows, k] / np.maximum(1e-9, near)[:, None] * size[:, None])

@@ -8,9 +8,8 @@ import numpy as np
 
 from crowdbot.metrics.contacts import contact_stretches
 from crowdbot.metrics.outline_clearance import pair_clearance
-from crowdbot.metrics.proximity import swept_distance, wall_clearance
-from crowdbot.metrics.step_clearance import step_outline_wall_clearance, step_wall_clearance
-from crowdbot.typing import Floats, Ints
+from crowdbot.metrics.proximity import swept_distance
+from crowdbot.typing import Floats
 
 from .robot_log import RobotLog
 
@@ -30,7 +29,7 @@ def task_metrics(log: RobotLog) -> dict[str, float]:
     }
     first = log.contacts[0].cause if log.contacts else ""
     known = log.goal is not None
-    obstacle = _wall_distance(log)
+    obstacle = log.wall_clearance
     return {
         **{f"{kind}_collision": float(count > 0) for kind, count in touches.items()},
         **{f"{kind}_collisions": count for kind, count in touches.items() if kind != "person"},
@@ -58,29 +57,10 @@ def count_failures_to_progress(times: Floats, distance: Floats) -> float:
     return float(np.sum(at[0] - at[1] < PROGRESS))
 
 
-def _wall_distance(log: RobotLog) -> Floats:
-    if log.outline is not None:
-        return _outline_distance(log, np.arange(len(log.times)))
-    return step_wall_clearance(log.position, log.position, np.full(len(log.times), log.radius), log.walls)
-
-
-def _outline_distance(log: RobotLog, before: Ints) -> Floats:
-    """Return the clearance of the outline to walls from the rows ``before`` to all rows ``[T]`` [m]."""
-    size, outline = np.full(len(log.times), log.radius), log.outline
-    assert outline is not None
-    return step_outline_wall_clearance(
-        log.position[before], log.heading[before], log.position, log.heading, size, outline, log.walls
-    )
-
-
 def _wall_contacts(log: RobotLog) -> float:
     if not len(log.walls):
         return 0.0
-    if log.outline is None:
-        swept = wall_clearance(log.position, log.radius, log.walls)
-    else:
-        swept = _outline_distance(log, np.maximum(np.arange(len(log.times)) - 1, 0))
-    return float(len(contact_stretches(log.times, swept, _wall_distance(log))))
+    return float(len(contact_stretches(log.times, log.least_wall_clearance, log.wall_clearance)))
 
 
 def _object_contacts(log: RobotLog) -> float:
