@@ -152,3 +152,37 @@ def test_check_run_and_falsify_print_the_note(tmp_path, capsys, monkeypatch):
     ]
     assert main(words) == 0
     assert BLIND[:60] in " ".join(capsys.readouterr().out.split())
+
+
+LOOKS = """from dataclasses import dataclass
+import numpy as np
+import crowdbot as cb
+
+
+@dataclass(frozen=True)
+class Looks(cb.Navigator):
+    def act(self, observation):
+        assert set(observation.readings) == {"narrow", "wide"}
+        assert observation.readings["narrow"].ranges.shape[-1] == 11
+        return cb.Twist(0.1 if observation.scan.ranges.shape[-1] == 91 else 0.0)
+"""
+SCANNERS = (
+    '<navigator type="looks.py:Looks"/><sensor name="narrow" type="lidar2d" rays="11" field-of-view="0.5"/>'
+    '<sensor name="wide" type="lidar2d" rays="91" field-of-view="4.5"/>'
+)
+
+
+def test_the_widest_of_several_scanners_is_the_scan_of_check_run_and_evaluate(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "looks.py").write_text(LOOKS, encoding="utf-8")
+    text = CORNER.replace('<navigator type="straight"/>', SCANNERS).replace(
+        "<robot ", '<robot default-sensors="false" '
+    )
+    (tmp_path / "corner.xml").write_text(text, encoding="utf-8")
+    assert main(["check", "corner.xml"]) == 0
+    assert "sensors narrow (lidar2d), wide (lidar2d)" in capsys.readouterr().out
+    assert main(["run", "corner.xml", "--set", "duration=1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["metrics"]["path_length"] > 0.05
+    assert main(["evaluate", "corner.xml", *SHORT, "--json"]) == 0
+    (cell,) = json.loads(capsys.readouterr().out)["cells"]
+    assert "1 timeout)" in cell["verdict"]["sentence"]
