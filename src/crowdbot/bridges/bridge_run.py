@@ -108,7 +108,7 @@ class BridgeRun:
             stack.callback(self._answer_rest)
             self.port.start()
             if self.port.transports:
-                names = ", ".join(one.name for one in self.port.transports)
+                names = ", ".join(transport.name for transport in self.port.transports)
                 self.note(f"trial {self.trial.name} is open to {names}; Ctrl-C ends the run")
             while True:
                 summary = self._run_once(number)
@@ -123,8 +123,8 @@ class BridgeRun:
                 f"{self.port.inbox.count.received} messages received; {latency.commands} commands answered a step after"
                 f" {1e3 * latency.median:.1f} ms (median), {1e3 * latency.p99:.1f} ms (99 %)"
             )
-        for one in self.port.transports:
-            if isinstance(one, RemarkSource) and (text := one.remark()):
+        for transport in self.port.transports:
+            if isinstance(transport, RemarkSource) and (text := transport.remark()):
                 self.note(text)
         return summary
 
@@ -213,7 +213,7 @@ class BridgeRun:
     def _note_instant(self, simulation: Simulation, unasked: bool = False) -> None:
         """Note that the messages of an instant are sent now, for the mode ``commands``."""
         if self.clock.mode == "commands":
-            self._robots = {one.robot.name for one in simulation.robots if one.robot.mirror is None}
+            self._robots = {robot.robot.name for robot in simulation.robots if robot.robot.mirror is None}
             count = self.port.inbox.count.velocities
             self.repeat.begin(self.port.is_heard, count, len(self._robots), unasked)
 

@@ -81,12 +81,12 @@ def read_request(text: str) -> ChallengeRequest:
 
 def _numbers(key: str, value: str, count: int) -> list[float]:
     try:
-        found = [float(word) for word in value.split()]
+        numbers = [float(word) for word in value.split()]
     except ValueError:
-        found = []
-    if len(found) != count or not all(map(math.isfinite, found)):
+        numbers = []
+    if len(numbers) != count or not all(map(math.isfinite, numbers)):
         raise InputError(f"{key}={value[:40]!r} must have {count} finite numbers")
-    return found
+    return numbers
 
 
 def encode_picture(image: Any) -> str:
@@ -191,7 +191,7 @@ class ChallengeServer:
         sent = ("/clock", "/people", self._odometry, self._camera, "/crowdbot/contacts")
         if not topic.endswith("/"):
             return topic in sent
-        return any(one == topic[:-1] or one.startswith(topic) for one in sent)
+        return any(item == topic[:-1] or item.startswith(topic) for item in sent)
 
     @property
     def _robot(self) -> str:
@@ -205,26 +205,26 @@ class ChallengeServer:
     def publish(self, messages: Sequence[StepMessage]) -> None:
         """Keep what the next reply says."""
         with self._state:
-            for one in messages:
-                if one.topic == self._camera:
-                    self._picture = one.message
-                elif one.topic in ("/people", self._odometry, "/crowdbot/contacts"):
-                    self._keep(one)
+            for message in messages:
+                if message.topic == self._camera:
+                    self._picture = message.message
+                elif message.topic in ("/people", self._odometry, "/crowdbot/contacts"):
+                    self._keep(message)
             if messages and messages[0].topic != "/map":
                 self._now = messages[-1].nanoseconds
                 self._payloads["clock"] = f"{self._now / 1e9:.9g}"
             self._state.notify_all()
 
-    def _keep(self, one: StepMessage) -> None:
-        stamp = f"{one.nanoseconds / 1e9:.9g}"
-        if one.topic == "/people":
-            people = one.message.people
+    def _keep(self, step_message: StepMessage) -> None:
+        stamp = f"{step_message.nanoseconds / 1e9:.9g}"
+        if step_message.topic == "/people":
+            people = step_message.message.people
             rows = [f"({k} {man.position.x:.9g} {man.position.y:.9g})" for k, man in enumerate(people)]
             self._payloads["crowd"] = " ".join([stamp, str(len(rows)), *rows])
-        elif one.topic == self._odometry:
-            self._payloads["odom"] = " ".join([stamp, *(f"{value:.9g}" for value in _planar(one.message))])
+        elif step_message.topic == self._odometry:
+            self._payloads["odom"] = " ".join([stamp, *(f"{value:.9g}" for value in _planar(step_message.message))])
         else:
-            self._contacts += [f"{man.robot} {man.other}" for man in one.message.contacts]
+            self._contacts += [f"{man.robot} {man.other}" for man in step_message.message.contacts]
 
     def poll(self) -> None:
         """Do nothing: a thread serves the client."""
@@ -283,13 +283,15 @@ class ChallengeServer:
         assert self._inbox is not None
         if request.control != "i":
             self._control(request.control)
-        names = {one.name for one in self._interface.trial.robots} if self._interface else set()
+        names = {robot.name for robot in self._interface.trial.robots} if self._interface else set()
         for name, (speed, turn) in request.commands.items():
             if not name or name in names:
                 twist = {"linear": {"x": speed}, "angular": {"z": turn}}
                 self._inbox.receive(f"/{name or self._robot}/cmd_vel", twist, self.name)
         target = None
-        if request.clock is not None and any(one.name == "/clock" for one in self._inbox.interface.inputs):
+        if request.clock is not None and any(
+            input_topic.name == "/clock" for input_topic in self._inbox.interface.inputs
+        ):
             target = round(request.clock * 1e9)
             clock = {"sec": target // 10**9, "nanosec": target % 10**9}
             self._inbox.receive("/clock", {"clock": clock}, self.name)
@@ -322,8 +324,8 @@ class ChallengeServer:
 def _colour_image(interface: RobotInterface) -> str:
     """Return the topic of the first colour camera of the first robot, empty without one."""
     robot = interface.trial.robots[0].name
-    found = [one.name for one in interface.outputs if one.robot == robot and one.about == "RGBCamera"]
-    return next((name for name in found if name.endswith("/image")), "")
+    names = [output.name for output in interface.outputs if output.robot == robot and output.about == "RGBCamera"]
+    return next((name for name in names if name.endswith("/image")), "")
 
 
 def _planar(message: Any) -> tuple[float, ...]:

@@ -27,17 +27,17 @@ def fields_of(message: Any) -> dict[str, Any]:
     >>> fields_of(Messages().twist(0.5, 0.1, 0.0))["linear"]
     {'x': 0.5, 'y': 0.0, 'z': 0.0}
     """
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for name, value in vars(message).items():
         if name == "__msgtype__":
             continue
         if hasattr(value, "__msgtype__"):
-            found[name] = fields_of(value)
+            result[name] = fields_of(value)
         elif isinstance(value, list) and value and hasattr(value[0], "__msgtype__"):
-            found[name] = [fields_of(one) for one in value]
+            result[name] = [fields_of(item) for item in value]
         else:
-            found[name] = value
-    return found
+            result[name] = value
+    return result
 
 
 def plain_fields(message: Any) -> dict[str, Any]:
@@ -59,9 +59,9 @@ def _plain(value: Any) -> Any:
         if value.dtype == np.uint8:
             return base64.b64encode(value.tobytes()).decode()
         rows = value.tolist()
-        return rows if value.dtype.kind != "f" or np.isfinite(value).all() else [_plain(one) for one in rows]
+        return rows if value.dtype.kind != "f" or np.isfinite(value).all() else [_plain(row) for row in rows]
     if isinstance(value, list):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
@@ -109,10 +109,10 @@ def _value(value: Any, node: Any, place: str, depth: int) -> Any:
     if inner[0] == Nodetype.BASE and inner[1][0] not in ("string", "bool"):
         dtype = np.dtype({"octet": "uint8", "byte": "uint8", "char": "uint8"}.get(inner[1][0], inner[1][0]))
         try:
-            return np.array([math.nan if one is None else one for one in rows], dtype=dtype)
+            return np.array([math.nan if row is None else row for row in rows], dtype=dtype)
         except (TypeError, ValueError, OverflowError):
             raise InputError(f"{place} must be a list of {inner[1][0]}") from None
-    return [_value(one, inner, f"{place}[{k}]", depth) for k, one in enumerate(rows)]
+    return [_value(row, inner, f"{place}[{k}]", depth) for k, row in enumerate(rows)]
 
 
 def _rows(value: Any, inner: Any, count: int, place: str) -> Any:

@@ -456,11 +456,11 @@ class RobotInterface:
         if follows_clock:
             inputs.append(InputTopic("/clock", ("rosgraph_msgs/msg/Clock",), quality=CLOCK, about="external time"))
         services = tuple(
-            Service(f"/crowdbot/{name}", f"simulation_interfaces/srv/{one.kind}", one.about)
-            for name, one in SERVICES.items()
+            Service(f"/crowdbot/{name}", f"simulation_interfaces/srv/{item.kind}", item.about)
+            for name, item in SERVICES.items()
         )
-        taken = {one.name for one in inputs}
-        return cls(trial, tuple(one for one in outputs if one.name not in taken), tuple(inputs), services)
+        taken = {input_topic.name for input_topic in inputs}
+        return cls(trial, tuple(output for output in outputs if output.name not in taken), tuple(inputs), services)
 
     def output(self, name: str) -> OutputTopic:
         """Return an output topic.
@@ -468,9 +468,9 @@ class RobotInterface:
         Raises:
             InputError: there is none of this name.
         """
-        for one in self.outputs:
-            if one.name == name:
-                return one
+        for item in self.outputs:
+            if item.name == name:
+                return item
         raise InputError(f"there is no topic {name!r}")
 
 
@@ -514,7 +514,7 @@ def _scene_outputs(trial: Trial, follows_clock: bool) -> list[OutputTopic]:
             "/crowdbot/reactions", "std_msgs/msg/String", "", 0.0, STATE, about="reactions to robots", truth=True
         ),
     ]
-    return [dataclasses.replace(one, truth=one.name not in SHARED) for one in rows]
+    return [dataclasses.replace(row, truth=row.name not in SHARED) for row in rows]
 
 
 def _robot_outputs(robot: RobotSpec, every: float) -> list[OutputTopic]:

@@ -156,7 +156,10 @@ class SocketServer:
             self._ready.set()
             await self._end.wait()
             await asyncio.gather(
-                *(one.close(code=WSCloseCode.GOING_AWAY, message=b"the run has ended") for one in list(self._sockets)),
+                *(
+                    socket.close(code=WSCloseCode.GOING_AWAY, message=b"the run has ended")
+                    for socket in list(self._sockets)
+                ),
                 return_exceptions=True,
             )
         finally:

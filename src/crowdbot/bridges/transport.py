@@ -101,5 +101,5 @@ def open_transport(text: str, options: Mapping[str, Any] | None = None) -> Trans
         inspect.signature(made).bind(address, **(options or {}))
     except TypeError:
         raise InputError(f"bridge {name!r} does not take {', '.join(options or {})}") from None
-    found: Transport = made(address, **(options or {}))
-    return found
+    transport: Transport = made(address, **(options or {}))
+    return transport

@@ -94,21 +94,21 @@ def load_entry(source: Path | bytes, challenge: Challenge | None = None) -> Chal
             raise InputError(f"{name} has the schema {values['schema']!r}, expected {SCHEMA!r}")
         texts = ("challenge", "challenge_hash", "submission", "submission_hash", "authors", "seeds")
         runs = {str(trial): tuple(map(row_of, rows)) for trial, rows in values["runs"].items()}
-        parts = {one: str(values[one]) for one in texts}
+        parts = {text: str(values[text]) for text in texts}
         verified, provenance = values["verified"] is True, dict(values["provenance"])
-        found = ChallengeEntry(**parts, runs=runs, verified=verified, provenance=provenance)
+        challenge_entry = ChallengeEntry(**parts, runs=runs, verified=verified, provenance=provenance)
     except OSError as error:
         raise InputError(f"{name}: {error.strerror}") from None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{name} is not an entry of a challenge ({type(error).__name__})") from None
-    if challenge is not None and found.challenge_hash != challenge.hash:
+    if challenge is not None and challenge_entry.challenge_hash != challenge.hash:
         raise InputError(
-            f"{name} was made for another version of {challenge.name}: hash {found.challenge_hash[:12]}...,"
+            f"{name} was made for another version of {challenge.name}: hash {challenge_entry.challenge_hash[:12]}...,"
             f" the challenge has {challenge.hash[:12]}..."
         )
-    return found
+    return challenge_entry
 
 
 def entry_differences(claimed: ChallengeEntry, found: ChallengeEntry) -> list[str]:

@@ -45,8 +45,8 @@ class Submission:
     @property
     def files(self) -> list[Path]:
         """All files, sorted by their name."""
-        found = [path for path in self.folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
-        return sorted(found, key=lambda path: path.relative_to(self.folder).as_posix())
+        paths = [path for path in self.folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
+        return sorted(paths, key=lambda path: path.relative_to(self.folder).as_posix())
 
     @property
     def hash(self) -> str:
@@ -85,19 +85,19 @@ def _submission(place: Path, values: Mapping[str, Any]) -> Submission:
             raise InputError(f"{name!r} is unknown{did_you_mean(name, KEYS)}; known are {', '.join(KEYS)}")
         if not isinstance(value, str) or len(value) > LONGEST:
             raise InputError(f"{name} must be a text of at most {LONGEST} characters")
-    found = Submission(place, **values) if "name" in values else Submission(place, "", **values)
-    if not found.name.strip():
+    submission = Submission(place, **values) if "name" in values else Submission(place, "", **values)
+    if not submission.name.strip():
         raise InputError("'name' is missing")
-    if bool(found.navigator) == bool(found.command):
+    if bool(submission.navigator) == bool(submission.command):
         raise InputError("give either navigator = 'mine.py:Mine' or command = './program'")
-    file = (found.navigator or found.command.split()[0]).partition(":")[0]
+    file = (submission.navigator or submission.command.split()[0]).partition(":")[0]
     if PurePosixPath(file).is_absolute() or ".." in PurePosixPath(file).parts or not (place / file).is_file():
         raise InputError(f"{file!r} must be a file of the submission")
-    if found.navigator and ("/" in file or not found.navigator.partition(":")[2].isidentifier()):
+    if submission.navigator and ("/" in file or not submission.navigator.partition(":")[2].isidentifier()):
         raise InputError(
-            f"navigator = {found.navigator!r} must be a class in a file beside {DESCRIPTION}: mine.py:Mine"
+            f"navigator = {submission.navigator!r} must be a class in a file beside {DESCRIPTION}: mine.py:Mine"
         )
-    return found
+    return submission
 
 
 def _check_files(place: Path) -> None:
@@ -121,7 +121,7 @@ def pack_submission(submission: Submission, path: Path, extra: Mapping[str, byte
         extra: further files by name, such as the own result.
     """
     contents = {
-        f"submission/{one.relative_to(submission.folder).as_posix()}": one.read_bytes() for one in submission.files
+        f"submission/{file.relative_to(submission.folder).as_posix()}": file.read_bytes() for file in submission.files
     }
     contents |= extra or {}
     data = io.BytesIO()
@@ -144,9 +144,9 @@ def unpack_submission(path: Path, folder: Path) -> tuple[Submission, dict[str, b
     try:
         with zipfile.ZipFile(path) as archive:
             entries = archive.infolist()
-            if len(entries) > MOST_FILES or sum(one.file_size for one in entries) > MOST_BYTES:
+            if len(entries) > MOST_FILES or sum(entry.file_size for entry in entries) > MOST_BYTES:
                 raise InputError(f"{path} has more than {MOST_FILES} files or {MOST_BYTES} bytes")
-            contents = {one.filename: _read(archive, one) for one in entries if not one.is_dir()}
+            contents = {entry.filename: _read(archive, entry) for entry in entries if not entry.is_dir()}
     except (OSError, zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
         raise InputError(f"{path} is not a packed submission: {error}") from None
     extra = {}

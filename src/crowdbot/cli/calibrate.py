@@ -62,7 +62,7 @@ def main(options: argparse.Namespace) -> int:
         _write_profiles(options.out, profiles)
     if options.json:
         shown = {name: as_json(fit) for name, fit in fits.items()}
-        print_json({**shown, **({"profiles": [one.as_dict() for one in profiles]} if profiles else {})})
+        print_json({**shown, **({"profiles": [profile.as_dict() for profile in profiles]} if profiles else {})})
         return 0
     print_notes(found)
     for name, fit in fits.items():
@@ -87,7 +87,7 @@ def _write_profiles(folder: Path, profiles: tuple[ParameterProfile, ...]) -> Non
     from crowdbot.calibration import plot_profiles
 
     if profiles:
-        text = json_text([one.as_dict() for one in profiles])
+        text = json_text([profile.as_dict() for profile in profiles])
         (folder / "profiles.json").write_text(text + "\n", encoding="utf-8")
         plot_profiles(profiles, folder / "profiles.png")
         note(f"wrote profiles.json, profiles.png in {folder}")
@@ -96,14 +96,14 @@ def _write_profiles(folder: Path, profiles: tuple[ParameterProfile, ...]) -> Non
 def _print_profiles(profiles: tuple[ParameterProfile, ...]) -> None:
     rows = [
         (
-            one.name,
-            number(one.best),
-            f"{one.interval[0]:.3g} to {one.interval[1]:.3g}",
-            f"{one.bootstrap[0]:.3g} to {one.bootstrap[1]:.3g}",
-            one.identified,
-            one.unit,
+            profile.name,
+            number(profile.best),
+            f"{profile.interval[0]:.3g} to {profile.interval[1]:.3g}",
+            f"{profile.bootstrap[0]:.3g} to {profile.bootstrap[1]:.3g}",
+            profile.identified,
+            profile.unit,
         )
-        for one in profiles
+        for profile in profiles
     ]
     if rows:
         head = ("parameter", "value", "95 % by profile", "95 % by bootstrap", "identified", "unit")

@@ -61,13 +61,13 @@ def main(options: argparse.Namespace) -> int:
 def _packages(words: list[str]) -> dict[str, Path]:
     from crowdbot.core import InputError
 
-    found = {}
+    packages = {}
     for word in words:
         name, sign, folder = word.partition("=")
         if not (name and sign and Path(folder).is_dir()):
             raise InputError(f"--package {word!r} must be NAME=FOLDER with an existing folder")
-        found[name] = Path(folder)
-    return found
+        packages[name] = Path(folder)
+    return packages
 
 
 def _is_robot(name: str) -> bool:
@@ -107,7 +107,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    variants = [one.name for one in expand_sweeps(trial)] if trial.sweeps else []
+    variants = [sweep.name for sweep in expand_sweeps(trial)] if trial.sweeps else []
     return {
         "problems": [],
         "robots": robot_lines([(trial.name, trial.robots)]),
@@ -175,7 +175,7 @@ def _field_units(kinds: tuple[type, ...]) -> dict[str, str]:
 
     Many docstrings refer to another class of the contract for a field, in which the same name has the same unit.
     """
-    found: dict[str, str] = {}
+    field_units: dict[str, str] = {}
     for base in dict.fromkeys(base for kind in kinds for base in kind.__mro__):
         text = inspect.cleandoc(base.__doc__ or "") + "\n"
         section = re.search(r"^(?:Fields|Args):\n((?: {4}.*\n|\n(?= {4}))+)", text, re.MULTILINE)
@@ -183,8 +183,8 @@ def _field_units(kinds: tuple[type, ...]) -> dict[str, str]:
             names, _, about = line.partition(": ")
             if unit := re.search(r"\[([^\]]+)\]", about):
                 for name in names.split(", "):
-                    found.setdefault(name, unit[1])
-    return found
+                    field_units.setdefault(name, unit[1])
+    return field_units
 
 
 def _part_line(part: dict[str, Any]) -> str:

@@ -111,11 +111,11 @@ def read_degradations(words: Sequence[str], values: Mapping[str, str]) -> list[D
         names = [*builtin_classes(degrade, degrade.Degradation)]
     kinds = [[find_class(part, degrade, degrade.Degradation) for part in name.split("+")] for name in names]
     _check_names(values, {kind for parts in kinds for kind in parts})
-    found: list[Degradation | Chain] = []
+    degradations: list[Degradation | Chain] = []
     for parts in kinds:
         links = tuple(from_attributes(kind, _own(kind, values)) for kind in parts)
-        found.append(links[0] if len(links) == 1 else degrade.Chain(links))
-    return found
+        degradations.append(links[0] if len(links) == 1 else degrade.Chain(links))
+    return degradations
 
 
 def _fields(kind: type) -> list[str]:
@@ -187,10 +187,10 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
     options.set = options.set_predictor  # --set applies to degradations here
     made = predictor_specs(options)
-    late = next((one.goal for one in made if one.goal is not None), None)
+    late = next((item.goal for item in made if item.goal is not None), None)
     if late is not None and len(found) > 1:
         raise InputError(f"the goal {late} depends on the recording: give one recording, not {len(found)}")
-    return [one.build(found[0]) for one in made]
+    return [item.build(found[0]) for item in made]
 
 
 def _task(options: argparse.Namespace) -> DegradedTask:
@@ -275,7 +275,7 @@ def _tables(
 ) -> None:
     names = ", ".join(tracks.name for tracks in recordings)
     units = recordings[0].units
-    rows_and_seconds = horizon([one.dt for one in recordings], task.observe, task.predict)
+    rows_and_seconds = horizon([recording.dt for recording in recordings], task.observe, task.predict)
     best = f", best of {task.samples} per {task.best_of}" if task.samples > 1 else ""
     carried = f", carried {task.carry} rows" if task.carry else ""
     for name, scores in done.items():

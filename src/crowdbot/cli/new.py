@@ -189,7 +189,7 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
         raise
     for copy in copied:
         note(f"copied {copy.name} to the folder of the trial, since a trial reads only files in its folder")
-    for sentence in (sentence for one in trial.recorded for sentence in one.remarks()):
+    for sentence in (sentence for item in trial.recorded for sentence in item.remarks()):
         note(sentence)
     return trial
 

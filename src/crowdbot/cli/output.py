@@ -98,13 +98,13 @@ def _width(head: Sequence[str], rows: Sequence[Sequence[str]]) -> int:
 
 def _shrink(widths: Sequence[int], excess: int) -> list[int]:
     """Return smaller widths: the widest column gives first, none becomes narrower than :data:`SHORTEST_NAME`."""
-    found = list(widths)
+    shrink = list(widths)
     for _ in range(excess):
-        widest = max(range(len(found)), key=lambda k: found[k])
-        if found[widest] <= SHORTEST_NAME:
+        widest = max(range(len(shrink)), key=lambda k: shrink[k])
+        if shrink[widest] <= SHORTEST_NAME:
             break
-        found[widest] -= 1
-    return found
+        shrink[widest] -= 1
+    return shrink
 
 
 def _break_name(name: str, width: int) -> str:

@@ -90,10 +90,10 @@ def main(options: argparse.Namespace) -> int:
         return predict_perception(options)
     if options.animate is not None and options.out is None:
         raise InputError("--animate requires --out DIR")
-    found = _with_windows(recordings(options))
+    windows = _with_windows(recordings(options))
     evaluation = PredictorEvaluation(
-        found,
-        (*predictor_specs(options), *_stored(options, found)),
+        windows,
+        (*predictor_specs(options), *_stored(options, windows)),
         options.samples,
         options.best_of,
         options.seed or 0,
@@ -120,7 +120,7 @@ def main(options: argparse.Namespace) -> int:
     if options.json:
         print_json(as_json(evaluation, results))
         return 0
-    print_notes(found)
+    print_notes(windows)
     for sentence in _notes(results):
         note(sentence)
     _tables(options, evaluation, results)
@@ -183,7 +183,7 @@ def _write_forecasts(evaluation: PredictorEvaluation, files: dict[Path, tuple[Re
     for file, (recording, spec) in files.items():
         past, future = recording.windows
         size = 1 if how.live else len(past)
-        parts = [one.forecast for one in predict_windows(
+        parts = [window.forecast for window in predict_windows(
             spec.build(recording), past, future, how.samples, how.best_of, how.seed, how.live, size
         )]  # fmt: skip
         write_forecasts(file, past, future, Forecast.concatenate(parts))
@@ -200,7 +200,7 @@ def _resume_hint(evaluation: PredictorEvaluation, keep: Path | None) -> str:
 
 def _notes(results: list[PredictorResult]) -> list[str]:
     """Return the notes of the predictors about the recordings, without duplicates."""
-    notes = (one.spec.predictor.note(one.recording.windows[0]) for one in results)
+    notes = (result.spec.predictor.note(result.recording.windows[0]) for result in results)
     return [sentence for sentence in dict.fromkeys(notes) if sentence]
 
 
@@ -246,7 +246,7 @@ def _tables(options: argparse.Namespace, evaluation: PredictorEvaluation, result
         if len(scores) > 1:
             scores.append(Score.total(scores))
             rows.append("together")
-        steps = [one.tracks.dt for one in evaluation.recordings]
+        steps = [recording.tracks.dt for recording in evaluation.recordings]
         reach = horizon(steps, options.observe, options.predict)
         _table(f"{evaluation.specs[0].name}, {reach}", "recording", rows, scores, caption)
         return
@@ -276,9 +276,9 @@ def as_json(evaluation: PredictorEvaluation, results: list[PredictorResult]) -> 
         "results": [
             {
                 "predictor": spec.name,
-                "notes": _notes([one for one in results if one.spec is spec]),
-                "total": Score.total([one.score for one in results if one.spec is spec]).as_dict(),
-                "data": {one.recording.path: one.score.as_dict() for one in results if one.spec is spec},
+                "notes": _notes([result for result in results if result.spec is spec]),
+                "total": Score.total([result.score for result in results if result.spec is spec]).as_dict(),
+                "data": {result.recording.path: result.score.as_dict() for result in results if result.spec is spec},
             }
             for spec in evaluation.specs
         ],

@@ -73,21 +73,21 @@ def predictor_specs(options: argparse.Namespace) -> tuple[PredictorSpec, ...]:
     from crowdbot.core import InputError, find_class
 
     values = parse_settings(options.set)
-    found: list[PredictorSpec] = []
+    specs: list[PredictorSpec] = []
     used = False
     for name in options.predictor:
         kind = find_class(name, prediction, prediction.Predictor)
         if issubclass(kind, prediction.Simulated):
             used = True
-            found += _schemes(options, values)
+            specs += _schemes(options, values)
         else:
-            found.append(
+            specs.append(
                 prediction.PredictorSpec(build_predictor(name, None, values if len(options.predictor) == 1 else {}))
             )
     given = next((part for part in SCHEME if getattr(options, part)), None)
     if given is not None and not used:
         raise InputError(f"--{given} requires the predictor simulated, not {', '.join(options.predictor)}")
-    return tuple(found)
+    return tuple(specs)
 
 
 def frame_line(

@@ -86,15 +86,15 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     """
     from crowdbot.core import InputError, did_you_mean
 
-    found = parse_settings(options.set)
+    result = parse_settings(options.set)
     world = getattr(options, "world", None)
     if world is not None:
-        if "world" in found:
-            raise InputError(f"--world {world} and --set world={found['world']} conflict; give one of them")
+        if "world" in result:
+            raise InputError(f"--world {world} and --set world={result['world']} conflict; give one of them")
         if world not in WORLDS:
             raise InputError(f"--world {world} must be {' or '.join(WORLDS)}{did_you_mean(world, WORLDS)}")
-        found["world"] = world
-    return found
+        result["world"] = world
+    return result
 
 
 def load_settings_trial(source: str, values: Mapping[str, str], trust: bool = False) -> Trial:

@@ -23,7 +23,9 @@ def pareto_front(points: Sequence[tuple[float, ...]]) -> list[int]:
     [0, 1]
     """
     return [
-        k for k, one in enumerate(points) if not any(_dominates(other, one) for j, other in enumerate(points) if j != k)
+        k
+        for k, point in enumerate(points)
+        if not any(_dominates(other, point) for j, other in enumerate(points) if j != k)
     ]
 
 

@@ -166,7 +166,7 @@ def trial_realism(trial: Trial) -> tuple[CrowdRealism, ...]:
     [('people', 'alike')]
     """
     every: tuple[Group, ...] = (*trial.agents, *trial.spawners, *trial.sources, *trial.recorded)
-    groups = [one for one in every if _has_people(one)]
+    groups = [item for item in every if _has_people(item)]
     if not trial.robots or not (groups or trial.avatars):
         return ()
     robot = trial.robots[0]
@@ -189,7 +189,7 @@ def realism_notice(realism: Sequence[CrowdRealism]) -> str:
     >>> realism_notice(trial_realism(load_trial("frontal")))
     'These people keep about the distance of recorded people around a robot.'
     """
-    kinds = dict.fromkeys(one.contacts for one in realism)
+    kinds = dict.fromkeys(item.contacts for item in realism)
     if not kinds:
         return ""
     who = "these people" if len(kinds) == 1 else "some of these people"
@@ -213,8 +213,8 @@ def _stands(group: Group) -> bool:
 def _crowds(trial: Trial, groups: Sequence[Group]) -> Iterator[CrowdRealism]:
     """Yield the realism of each crowd with people who walk."""
     crowds = Crowds.spread(trial.crowd)
-    walking = [one for one in groups if not _stands(one) and not isinstance(one, RecordedPeople)]
-    used = {one.crowd or crowds[0].name for one in walking}
+    walking = [group for group in groups if not _stands(group) and not isinstance(group, RecordedPeople)]
+    used = {item.crowd or crowds[0].name for item in walking}
     change = _trial_change(trial)
     for crowd in crowds:
         if crowd.name in used:
@@ -275,7 +275,7 @@ def _people_of_their_own(trial: Trial, groups: Sequence[Group]) -> Iterator[Crow
         yield CrowdRealism(
             "people who stand", "unknown", f"Some people stand and do not step aside for a robot. This {compared}"
         )
-    own = [one for one in groups if isinstance(one, Agent) and one.parameters]
+    own = [group for group in groups if isinstance(group, Agent) and group.parameters]
     if own:
         names = ", ".join(dict.fromkeys(parameter.name for agent in own for parameter in agent.parameters))
         yield CrowdRealism(
@@ -284,13 +284,13 @@ def _people_of_their_own(trial: Trial, groups: Sequence[Group]) -> Iterator[Crow
             f"{len(own)} of the people {'has' if len(own) == 1 else 'have'} own parameters ({names}). This {compared}",
         )
     kinds = dict.fromkeys(
-        reaction.type for one in groups if not isinstance(one, RecordedPeople) for reaction in one.reactions
+        reaction.type for group in groups if not isinstance(group, RecordedPeople) for reaction in group.reactions
     )
     if kinds:
         yield CrowdRealism(
             "reactions", "unknown", f"Some people react to the robot ({', '.join(kinds)}). This {compared}"
         )
-    modes = {one.mode for one in trial.recorded}
+    modes = {item.mode for item in trial.recorded}
     if "scripted" in modes:
         yield CrowdRealism(
             "people of a recording",
@@ -312,7 +312,7 @@ def _changes(model: CrowdModel) -> list[str]:
         drawn = [name for name, _ in model.draws]
         words = [word for word in _changes(model.model) if word.partition("=")[0].replace("-", "_") not in drawn]
         return [*words, *(f"drawn {name.replace('_', '-')}" for name in drawn)]
-    found = []
+    changes = []
     for field in dataclasses.fields(model):
         default, value = field.default, getattr(model, field.name)
         if field.default_factory is not dataclasses.MISSING:
@@ -320,8 +320,8 @@ def _changes(model: CrowdModel) -> list[str]:
         plain = _plain(value)
         if default is not dataclasses.MISSING and _plain(default) != plain:
             shown = f"={plain:g}" if isinstance(plain, float) else f"={plain}" if isinstance(plain, str) else " changed"
-            found.append(f"{field.name.replace('_', '-')}{shown}")
-    return found
+            changes.append(f"{field.name.replace('_', '-')}{shown}")
+    return changes
 
 
 def _plain(value: Any) -> Any:
@@ -331,9 +331,9 @@ def _plain(value: Any) -> Any:
     if isinstance(value, int | float | np.number):
         return float(value)
     if isinstance(value, Mapping):
-        return {str(name): _plain(one) for name, one in value.items()}
+        return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, np.ndarray | list | tuple):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return repr(value)
 
 

@@ -111,7 +111,7 @@ def load_robot_recording(
     """
     check_number("recording", "radius", radius, "m", exclusive_min=0.0)
     check_number("recording", "step", step, "s", exclusive_min=0.0)
-    source, *other = (_recording(one, options) for one in (path, robot_file) if one is not None)
+    source, *other = (_recording(item, options) for item in (path, robot_file) if item is not None)
     people = _metres(source.original)
     vehicle = _metres(other[0].original) if other else people
     who = _robot_id(vehicle, robot, robot_file is not None)
@@ -124,9 +124,9 @@ def load_robot_recording(
             f"{vehicle.name}: robot {who} has {times[-1] - times[0]:.2g} s, too short for steps of {step:g} s"
         )
     tracks = [(times, vehicle.position[own])]
-    for one in people.ids.tolist():
-        rows = np.flatnonzero(people.id == one)
-        if one in people.robots or (robot_file is None and one == who):
+    for item in people.ids.tolist():
+        rows = np.flatnonzero(people.id == item)
+        if item in people.robots or (robot_file is None and item == who):
             continue
         tracks.append((people.clock[rows] - start, people.position[rows]))
     agents, ends = _agents(tracks, moments, radius)

@@ -57,8 +57,8 @@ def evaluate(
         raise InputError(f"workers = {workers} must be at least 1")
     seeds = [int(seed) for seed in plan.seeds]
     jobs = [
-        RunJob(k, one.xml, one.variant.folder, (), plan.trust or _is_allowed(plan, one), plan.families)
-        for k, one in enumerate(plan.cells)
+        RunJob(k, cell.xml, cell.variant.folder, (), plan.trust or _is_allowed(plan, cell), plan.families)
+        for k, cell in enumerate(plan.cells)
     ]
     files = [] if folder is None else [folder / f"{_key(job)}.jsonl" for job in jobs]
     rows: list[dict[int, RunRow]] = [{row.seed: row for row in read_rows(file)} for file in files] or [{} for _ in jobs]

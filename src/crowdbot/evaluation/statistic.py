@@ -96,8 +96,8 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     """
     if own := OWN.fullmatch(name):
         word, address = metric_name(own["address"]), own["address"]
-        found = parse_statistic(f"{own['kind'] or ''}{word}", metrics)
-        return Statistic(f"{own['kind'] or ''}{word.replace('_', '-')}", word, found.kind, address)
+        statistic = parse_statistic(f"{own['kind'] or ''}{word}", metrics)
+        return Statistic(f"{own['kind'] or ''}{word.replace('_', '-')}", word, statistic.kind, address)
     kind, colon, word = name.rpartition(":")
     if not colon and word in RATES:
         return Statistic(name, RATES[word], "rate")
@@ -107,7 +107,7 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
         raise InputError(f"statistic {name!r}: {kind!r} is unknown; possible are {kinds}")
     metric = word.replace("-", "_")
     if metrics is not None and metric not in metrics:
-        known = [*RATES, *(one.replace("_", "-") for one in metrics)]
+        known = [*RATES, *(metric.replace("_", "-") for metric in metrics)]
         hint = did_you_mean(word, known) or f"; known are {', '.join(known)}"
         raise InputError(f"there is no metric {word!r}{hint}")
     return Statistic(name, metric, kind)
@@ -125,10 +125,10 @@ def check_metrics(statistics: Iterable[Statistic]) -> None:
     crowdbot.core.errors.InputError: there is no metric 'time-to-gaol', did you mean 'time-to-goal'?
     """
     statistics = list(statistics)
-    own = {one.metric: None for one in statistics if one.address} | dict.fromkeys(RATES.values())
-    for one in statistics:
-        if one.metric not in own and _row_of(one.metric) is None:
-            parse_statistic(one.name, {**own, **metric_table()})
+    own = {statistic.metric: None for statistic in statistics if statistic.address} | dict.fromkeys(RATES.values())
+    for statistic in statistics:
+        if statistic.metric not in own and _row_of(statistic.metric) is None:
+            parse_statistic(statistic.name, {**own, **metric_table()})
 
 
 _FUNCTIONS: dict[str, Callable[[Floats], Floats]] = {

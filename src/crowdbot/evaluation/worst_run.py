@@ -123,7 +123,7 @@ def worst_rows(cell: CellResult, count: int = 3) -> list[tuple[RunRow, str]]:
     >>> [(row.seed, reason) for row, reason in worst_rows(CellResult("hall", "orca", "", "", {}, rows), 3)]
     [(1, 'clearance 0.05 m'), (2, 'clearance 0.15 m')]
     """
-    contacts = {one.seed: one for one in person_contacts(cell)}
+    contacts = {contact.seed: contact for contact in person_contacts(cell)}
     order = [*contacts]
     order += [row.seed for row in cell.valid if _hurts(row) and row.seed not in contacts]
     close = sorted(cell.valid, key=lambda row: (_clearance(row), row.seed))
@@ -209,13 +209,13 @@ def _drawing(episode: Episode) -> dict[str, Any]:
 
 def _plan(episode: Episode) -> list[dict[str, Any]]:
     """Return the strokes of uneven ground and doors as values for the page."""
-    found = []
+    plan = []
     for line in floor_plan(episode.trial.stage):
         gaps = np.flatnonzero(np.isnan(line.points[:, 0]))
         for stroke in np.split(line.points, gaps):
             points = np.round(stroke[~np.isnan(stroke[:, 0])], 2).tolist()
-            found.append({"color": line.color, "width": line.width, "points": points})
-    return found
+            plan.append({"color": line.color, "width": line.width, "points": points})
+    return plan
 
 
 def _bounds(episode: Episode, walls: Sequence[Any], goals: Sequence[Any]) -> list[float]:

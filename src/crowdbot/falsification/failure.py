@@ -150,7 +150,7 @@ def describe_event(episode: Episode) -> str:
         return "error" if episode.failure is None else f"error: {str(episode.failure)[:60]}"
     robot = episode.robots[0]
     own = int(episode.ids[robot])
-    touched = next(((time, one) for time, one in episode.contacts if own in (one.robot, one.other)), None)
+    touched = next(((time, item) for time, item in episode.contacts if own in (item.robot, item.other)), None)
     if touched is None or not episode.metrics.get("collision"):
         return episode.outcome
     time, contact = touched

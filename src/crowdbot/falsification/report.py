@@ -205,9 +205,9 @@ def _clusters(result: FalsificationResult) -> str:
         return "<p>No run fails.</p>"
     names = (*("red", "orange", "violet", "teal", "pink", "olive")[: len(COLORS)], *["dark"] * len(result.clusters))
     rows = [
-        (n + 1, names[n], one.event, len(one.members), f"{one.share:.3g}",
-         f"{result.samples[one.worst].robustness:.3g}", factor_ranges(result, one.members))
-        for n, one in enumerate(result.clusters)
+        (n + 1, names[n], cluster.event, len(cluster.members), f"{cluster.share:.3g}",
+         f"{result.samples[cluster.worst].robustness:.3g}", factor_ranges(result, cluster.members))
+        for n, cluster in enumerate(result.clusters)
     ]  # fmt: skip
     head = ("cluster", "color", "event", "failures", "share of the probability", "least robustness", "values")
     return _table(head, rows)

@@ -161,7 +161,10 @@ def _sample(job: SampleJob, k: int, row: Episode | str, duration: float) -> Samp
 
 def write_samples(samples: Sequence[Sample], path: Path) -> None:
     """Write samples as JSON; an infinite robustness is null."""
-    rows = [asdict(one) | {"robustness": one.robustness if math.isfinite(one.robustness) else None} for one in samples]
+    rows = [
+        asdict(sample) | {"robustness": sample.robustness if math.isfinite(sample.robustness) else None}
+        for sample in samples
+    ]
     path.write_text(json.dumps(rows, allow_nan=False), encoding="utf-8")
 
 

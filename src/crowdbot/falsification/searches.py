@@ -139,9 +139,9 @@ def mixture_weights(proposals: Sequence[Proposal], counts: Sequence[int], points
     >>> mixture_weights([Proposal.standard(1)], [10], np.zeros((2, 1))).tolist()
     [1.0, 1.0]
     """
-    there = [(one, count) for one, count in zip(proposals, counts, strict=False) if count]
+    there = [(proposal, count) for proposal, count in zip(proposals, counts, strict=False) if count]
     shares = np.array([count for _, count in there]) / sum(count for _, count in there)
-    logs = np.array([one.log_ratio(points) for one, _ in there])
+    logs = np.array([item.log_ratio(points) for item, _ in there])
     return np.asarray(np.exp(-special.logsumexp(logs, axis=0, b=shares[:, None])))
 
 
@@ -182,22 +182,22 @@ def _maximize(points: Floats, share: Floats, count: int, rng: np.random.Generato
     means = _spread_means(points, share, count, rng)
     center = share @ points
     deviation = np.sqrt(share @ (points - center) ** 2)
-    found = Proposal(np.full(count, 1.0 / count), means, np.maximum(np.tile(deviation, (count, 1)), FLOOR), 0.0)
+    proposal = Proposal(np.full(count, 1.0 / count), means, np.maximum(np.tile(deviation, (count, 1)), FLOOR), 0.0)
     for _ in range(STEPS if count > 1 else 1):
-        log = found._components(points)
+        log = proposal._components(points)
         belongs = np.exp(log - special.logsumexp(log, axis=1, keepdims=True)) * share[:, None]
         total = np.maximum(belongs.sum(axis=0), 1e-12)
         means = (belongs.T @ points) / total[:, None]
         spread = np.stack([belongs[:, k] @ (points - means[k]) ** 2 / total[k] for k in range(count)])
-        found = Proposal(total / total.sum(), means, np.maximum(np.sqrt(spread), FLOOR), 0.0)
-    return found
+        proposal = Proposal(total / total.sum(), means, np.maximum(np.sqrt(spread), FLOOR), 0.0)
+    return proposal
 
 
 def _spread_means(points: Floats, share: Floats, count: int, rng: np.random.Generator) -> Floats:
     """Return first means: points drawn far from each other (k-means++)."""
     chosen = [points[int(rng.choice(len(points), p=share))]]
     while len(chosen) < count:
-        away = np.min([np.sum((points - one) ** 2, axis=1) for one in chosen], axis=0) * share
+        away = np.min([np.sum((points - item) ** 2, axis=1) for item in chosen], axis=0) * share
         if away.sum() <= 0.0:
             chosen.append(points[int(rng.choice(len(points), p=share))])
         else:
@@ -291,7 +291,7 @@ class CrossEntropy(Sampling):
         weights = mixture_weights(used, counts, points)
         valid = np.array([sample.valid for sample in runner.samples])
         groups = np.repeat(np.arange(len(counts)), counts)
-        largest = len(points) / sum(count * one.defensive for one, count in zip(used, counts, strict=True))
+        largest = len(points) / sum(count * item.defensive for item, count in zip(used, counts, strict=True))
         estimate = mixture_estimate(robustness <= 0.0, weights, groups, largest)
         mass = float(np.sum(weights[valid])) / float(np.sum(weights))
         if not valid.all() and mass > 0.0:
@@ -356,7 +356,7 @@ class DirectedSearch(Sampling):
             shares = candidates[:, 0, 0, :]
             seeds = np.minimum((shares[:, -1] * MOST_SEEDS).astype(np.int64), MOST_SEEDS - 1)
             samples = runner.run(special.ndtri(shares[:, :-1]), seeds)
-            values = np.array([self._cost(one.robustness, one.log_density) for one in samples])
+            values = np.array([self._cost(sample.robustness, sample.log_density) for sample in samples])
             return values[:, None, None]
 
         self.method.minimize(cost, low, high, [rng], runner.budget, start)

@@ -77,7 +77,7 @@ def contact_events(
     """
     turned, shape = (np.zeros(len(times)), None) if heading is None else (heading, outline)
     swept, gap, _ = outline_clearance(times, position, velocity, turned, radius, active, robot, shape)
-    found: list[ContactEvent] = []
+    events: list[ContactEvent] = []
     for person in np.flatnonzero(np.any(swept < 0.0, axis=0)):
         for first, last in contact_stretches(times, swept[:, person], gap[:, person]):
             deepest = -float(np.min(swept[first : last + 1, person]))
@@ -86,8 +86,8 @@ def contact_events(
             )
             impact = max(0.0, float((own - other) @ normal))
             cause = cause_of(normal, own, other)
-            found.append(ContactEvent(int(person), begin, float(times[last]), deepest, cause, impact))
-    return tuple(sorted(found, key=lambda event: (event.begin, event.person)))
+            events.append(ContactEvent(int(person), begin, float(times[last]), deepest, cause, impact))
+    return tuple(sorted(events, key=lambda event: (event.begin, event.person)))
 
 
 def contact_stretches(times: Floats, swept: Floats, gap: Floats) -> list[tuple[int, int]]:

@@ -31,7 +31,7 @@ def _scores(
 ) -> Floats:  # pragma: no cover - compiled
     """Return the score ``[N]`` of each person of each window."""
     K, T = samples.shape[1], samples.shape[2]
-    found = np.zeros(len(window))
+    scores = np.zeros(len(window))
     own = np.empty((K + 1, T, 2))  # samples with weight, then the truth, at the existing steps
     share = np.empty(K + 1)
     for n in range(len(window)):
@@ -50,8 +50,8 @@ def _scores(
         share[kept] = -1.0
         for k in range(kept):
             for other in range(k + 1, kept + 1):
-                found[n] -= share[k] * share[other] * _distance(own[k], own[other], steps, path)
-    return found
+                scores[n] -= share[k] * share[other] * _distance(own[k], own[other], steps, path)
+    return scores
 
 
 def energy_score(forecast: Forecast, future: Windows, over: str = "steps") -> Floats:
@@ -87,9 +87,9 @@ def energy_score(forecast: Forecast, future: Windows, over: str = "steps") -> Fl
         raise InputError(f"energy score: over = {over!r} must be {' or '.join(OVER)}{did_you_mean(over, OVER)}")
     if forecast.samples == 1 and over == "steps":
         return ade(forecast, future)[:, 0]  # equal to the ADE; avoids loading a kernel
-    found = np.full(future.scored.shape, np.nan)
+    result = np.full(future.scored.shape, np.nan)
     window, person = np.nonzero(future.scored)
     samples, weight = np.ascontiguousarray(forecast.position), np.ascontiguousarray(forecast.weight)
     truth, there = np.ascontiguousarray(future.position), np.ascontiguousarray(future.present)
-    found[window, person] = _scores(samples, weight, truth, there, window, person, over == "path")
-    return found
+    result[window, person] = _scores(samples, weight, truth, there, window, person, over == "path")
+    return result

@@ -49,10 +49,10 @@ def kde_nll(forecast: Forecast, future: Windows, floor: float = FLOOR) -> Floats
     [2.161, nan]
     """
     check(forecast, future)
-    found = np.full(future.scored.shape, np.nan)
+    result = np.full(future.scored.shape, np.nan)
     window, person = np.nonzero(future.scored)
     if forecast.samples == 1:
-        return found
+        return result
     size = max(1, NUMBERS_AT_ONCE // (forecast.samples * forecast.steps))
     for first in range(0, len(window), size):
         w, a = window[first : first + size], person[first : first + size]
@@ -61,8 +61,8 @@ def kde_nll(forecast: Forecast, future: Windows, floor: float = FLOOR) -> Floats
         known = there & ~np.isnan(density)
         steps = known.sum(axis=1)
         total = -np.sum(np.where(known, np.maximum(density, floor), 0.0), axis=1)
-        found[w, a] = np.where(steps > 0, total / np.maximum(steps, 1), np.nan)
-    return found
+        result[w, a] = np.where(steps > 0, total / np.maximum(steps, 1), np.nan)
+    return result
 
 
 def _log_density(samples: Floats, weight: Floats, truth: Floats) -> Floats:
@@ -75,7 +75,7 @@ def _log_density(samples: Floats, weight: Floats, truth: Floats) -> Floats:
     middle, radius = (xx + yy) / 2.0, np.hypot((xx - yy) / 2.0, xy)
     flat = (middle - radius <= FLAT * (middle + radius)) | (middle + radius <= EQUAL**2) | (power > 1.0 - 1e-9)
     width = np.cbrt(power)  # Scott: n ** (-1 / (d + 4)), squared, d = 2
-    xx, xy, yy = (np.where(flat, one, value * width) for one, value in ((1.0, xx), (0.0, xy), (1.0, yy)))
+    xx, xy, yy = (np.where(flat, item, value * width) for item, value in ((1.0, xx), (0.0, xy), (1.0, yy)))
     determinant = xx * yy - xy * xy
     dx, dy = (samples[..., axis] - truth[:, None, :, axis] for axis in (0, 1))
     distance2 = (yy[:, None] * dx * dx - 2.0 * xy[:, None] * dx * dy + xx[:, None] * dy * dy) / determinant[:, None]

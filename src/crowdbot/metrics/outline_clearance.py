@@ -89,13 +89,13 @@ def outline_clearance(
             np.asarray(clearance(position, radius, active, robot)),
             time_to_collision(position, velocity, radius, active, robot),
         )
-    found = OutlineClearance(*(np.empty(active.shape) for _ in range(3)))
+    result = OutlineClearance(*(np.empty(active.shape) for _ in range(3)))
     jump = JUMP * np.diff(times, prepend=-math.inf)
     sizes = np.broadcast_to(radius, active.shape)
     arrays = map(np.ascontiguousarray, (jump, position, velocity, heading, sizes, active))
-    everything: Any = (*arrays, robot, np.ascontiguousarray(outline), *found)
+    everything: Any = (*arrays, robot, np.ascontiguousarray(outline), *result)
     _measure(*everything)
-    return found
+    return result
 
 
 @kernel
@@ -180,7 +180,7 @@ def pair_clearance(
     >>> pair_clearance((here, beside), (still, still), (0.54, 0.54), (box, box), np.ones(1, bool))[1].round(3).tolist()
     [0.1]
     """
-    table = Outlines.of({k: one for k, one in enumerate(outline) if one is not None}, 2)
+    table = Outlines.of({k: item for k, item in enumerate(outline) if item is not None}, 2)
     swept, gap = np.empty(len(there)), np.empty(len(there))
     (place, other), (turn, face) = (tuple(map(np.ascontiguousarray, pair)) for pair in (position, heading))
     sizes = (float(radius[0]), float(radius[1]))

@@ -132,39 +132,39 @@ class Score:
             return scores[0]
         first = scores[0]
         for name in ("predictor", "protocol", "samples", "best_of", "units"):
-            values = [getattr(one, name) for one in scores]
+            values = [getattr(item, name) for item in scores]
             if any(value != values[0] for value in values):
                 raise InputError(f"scores with different {name} cannot be added up: {', '.join(map(repr, values))}")
-        if len({len(one.horizon) for one in scores}) > 1:
-            reach = ", ".join(str(len(one.horizon)) for one in scores)
+        if len({len(item.horizon) for item in scores}) > 1:
+            reach = ", ".join(str(len(item.horizon)) for item in scores)
             raise InputError(f"scores of different horizons cannot be added up: {reach} steps")
-        persons = [one.persons for one in scores]
-        windows = [one.windows for one in scores]
-        there = [tuple(one.there) for one in scores]
-        known = [one.people for one in scores if one.people is not None]
+        persons = [item.persons for item in scores]
+        windows = [item.windows for item in scores]
+        there = [tuple(item.there) for item in scores]
+        known = [item.people for item in scores if item.people is not None]
         people = PersonValues.concatenate(known) if len(known) == len(scores) else None
 
         def mean(name: str, counts: Sequence[int]) -> float:
-            return _mean([getattr(one, name) for one in scores], counts)
+            return _mean([getattr(item, name) for item in scores], counts)
 
         return dataclasses.replace(
             first,
-            source=" + ".join(one.source for one in scores),
+            source=" + ".join(item.source for item in scores),
             windows=sum(windows),
             persons=sum(persons),
             ade=mean("ade", persons),
             fde=mean("fde", persons),
             miss_rate=mean("miss_rate", persons),
-            collisions=mean("collisions", [one.together for one in scores]),
-            together=sum(one.together for one in scores),
-            true_collisions=mean("true_collisions", [one.accompanied for one in scores]),
-            accompanied=sum(one.accompanied for one in scores),
-            nll=mean("nll", [one.dense for one in scores]),
-            dense=sum(one.dense for one in scores),
+            collisions=mean("collisions", [item.together for item in scores]),
+            together=sum(item.together for item in scores),
+            true_collisions=mean("true_collisions", [item.accompanied for item in scores]),
+            accompanied=sum(item.accompanied for item in scores),
+            nll=mean("nll", [item.dense for item in scores]),
+            dense=sum(item.dense for item in scores),
             energy=mean("energy", persons),
-            horizon=tuple(map(_mean, zip(*(one.horizon for one in scores), strict=True), zip(*there, strict=True))),
+            horizon=tuple(map(_mean, zip(*(item.horizon for item in scores), strict=True), zip(*there, strict=True))),
             there=tuple(sum(counts) for counts in zip(*there, strict=True)),
-            dt=first.dt if all(one.dt == first.dt for one in scores) else math.nan,
+            dt=first.dt if all(item.dt == first.dt for item in scores) else math.nan,
             seconds_per_window=mean("seconds_per_window", windows),
             intervals=people.intervals() if people is not None else Intervals(),
             people=people,
@@ -209,11 +209,11 @@ class Score:
 
         Pass them to :meth:`cells` of each score.
         """
-        measured = {name: None for one in scores for name, word in one._words().items() if word != "-"}
+        measured = {name: None for item in scores for name, word in item._words().items() if word != "-"}
         kept = {"collisions", "ms/window", *measured} - (
-            set(SAMPLED) if all(one.samples == 1 for one in scores) else set()
+            set(SAMPLED) if all(item.samples == 1 for item in scores) else set()
         )
-        order = dict.fromkeys(name for one in scores for name in one._words())
+        order = dict.fromkeys(name for item in scores for name in item._words())
         return tuple(name for name in order if name in kept)
 
     def cells(self, columns: Sequence[str] | None = None) -> tuple[str, ...]:

@@ -256,7 +256,7 @@ class Observation:
     @property
     def odometry(self) -> Odometry | None:
         """Latest reading of the first odometry, or None."""
-        return next((one for one in self.readings.values() if isinstance(one, Odometry)), None)
+        return next((reading for reading in self.readings.values() if isinstance(reading, Odometry)), None)
 
     def direction_to(self, point: tuple[float, float]) -> float:
         """Return the direction to a point x, y [m] in the robot frame, -pi to pi [rad]; 0 at the point."""

@@ -61,22 +61,22 @@ class TrackBatch(Sequence[TrackHistory]):
         Raises:
             InputError: their lengths differ.
         """
-        lengths = {one.length for one in histories}
+        lengths = {history.length for history in histories}
         if len(lengths) > 1:
             raise InputError(f"tracks: the histories have different lengths: {sorted(lengths)} rows")
-        T, A = max(lengths, default=LENGTH), max((len(one.ids) for one in histories), default=0)
+        T, A = max(lengths, default=LENGTH), max((len(history.ids) for history in histories), default=0)
         N = len(histories)
-        found = cls(
+        track_batch = cls(
             np.full((N, T), np.nan),
             np.zeros((N, A), dtype=np.int64),
-            np.array([len(one.ids) for one in histories], dtype=np.int64),
+            np.array([len(history.ids) for history in histories], dtype=np.int64),
             np.full((N, T, A, 2), np.nan),
         )
-        for k, one in enumerate(histories):
-            rows, people = len(one.times), len(one.ids)
-            found.times[k, T - rows :], found.ids[k, :people] = one.times, one.ids
-            found.position[k, T - rows :, :people] = one.position
-        return found
+        for k, history in enumerate(histories):
+            rows, people = len(history.times), len(history.ids)
+            track_batch.times[k, T - rows :], track_batch.ids[k, :people] = history.times, history.ids
+            track_batch.position[k, T - rows :, :people] = history.position
+        return track_batch
 
     @property
     def length(self) -> int:

@@ -70,14 +70,14 @@ class BoxDetector(Detector):
         self.check(reading)
         assert isinstance(reading, RgbImage)
         pose = spatial_pose(reading.pose)
-        found = self.find_boxes(reading.rgb[0])
-        place, covariance = self._places(found.box, reading.lens, pose)
+        boxes = self.find_boxes(reading.rgb[0])
+        place, covariance = self._places(boxes.box, reading.lens, pose)
         away = np.linalg.norm(place - pose.position[0, :2], axis=1)
         kept = np.isfinite(away) & (away <= self.max_range)
-        area = np.maximum(1, (found.box[:, 2] - found.box[:, 0]) * (found.box[:, 3] - found.box[:, 1])).astype(np.int64)
+        area = np.maximum(1, (boxes.box[:, 2] - boxes.box[:, 0]) * (boxes.box[:, 3] - boxes.box[:, 1])).astype(np.int64)
         return Detections(
             float(np.max(reading.time)), place[kept], covariance[kept], area[kept],
-            self._coverage(reading.lens, pose, found.box[kept], away[kept]),
+            self._coverage(reading.lens, pose, boxes.box[kept], away[kept]),
         )  # fmt: skip
 
     def _places(self, box: Floats, lens: Lens, pose: SpatialPose) -> tuple[Floats, Floats]:

@@ -47,8 +47,8 @@ def read_layers(file: str, built_in: str, owner: str, inputs: int, outputs: int)
     for k in range(0, len(layers) - 1, 2):
         fits = fits and layers[k].ndim == 2 and len(layers[k]) == width and layers[k + 1].shape == layers[k].shape[1:]
         width = layers[k].shape[-1] if fits else 0
-    if not fits or width != outputs or not all(np.isfinite(one).all() for one in layers):
-        raise DataError(f"{path} has no weights of {owner}: the shapes {[one.shape for one in layers]} do not fit")
+    if not fits or width != outputs or not all(np.isfinite(layer).all() for layer in layers):
+        raise DataError(f"{path} has no weights of {owner}: the shapes {[layer.shape for layer in layers]} do not fit")
     return layers
 
 

@@ -388,12 +388,12 @@ def beam_samples(scan: LabelledScan, rng: np.random.Generator, skipped: float) -
 def _data(scans: int, seed: int, name: str, skipped: float) -> tuple[Floats, Floats]:
     rng = stream(seed, "scan-network", name)
     parts = [beam_samples(generate_scan(rng), rng, skipped) for _ in range(scans)]
-    return np.concatenate([one for one, _ in parts]), np.concatenate([other for _, other in parts])
+    return np.concatenate([item for item, _ in parts]), np.concatenate([other for _, other in parts])
 
 
 def _fit(torch: Any, network: Any, scans: int, epochs: int, seed: int, progress: Callable[[float], None] | None) -> int:
     """Train the network and return the number of beams."""
-    windows, labels = (torch.tensor(one, dtype=torch.float32) for one in _data(scans, seed, "train", SKIPPED))
+    windows, labels = (torch.tensor(item, dtype=torch.float32) for item in _data(scans, seed, "train", SKIPPED))
     optimizer = torch.optim.Adam(network.parameters(), lr=RATE, weight_decay=1e-5)
     batches = max(1, len(windows) // BATCH)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, epochs * batches)

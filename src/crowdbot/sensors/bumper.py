@@ -134,20 +134,20 @@ def _rounds(scene: Scene, e: int, place: Floats, low: float, high: float) -> lis
     """Return agents without limbs, limbs and posts as discs relative to the centre of the ring."""
     bodies = scene.bodies
     bare = np.ones(scene.shape[1], dtype=np.bool_)
-    found: list[Arcs] = []
+    arcs: list[Arcs] = []
     if bodies is not None:
         for owner in (bodies.owner, bodies.post_owner, bodies.box_owner):
             bare[owner[(owner >= 0) & (owner < len(bare))]] = False
         near, size = _limbs(bodies.start[e], bodies.end[e], bodies.radius[e], place, low, high)
-        found.append(_kept(near, size, bodies.owner, scene, e))
+        arcs.append(_kept(near, size, bodies.owner, scene, e))
         foot, tall = bodies.post_foot[e], bodies.post_height[e]
         reach = (foot[:, 2] <= high) & (foot[:, 2] + tall >= low)
-        found.append(
+        arcs.append(
             _kept(foot[:, :2] - place, np.where(reach, bodies.post_radius[e], np.nan), bodies.post_owner, scene, e)
         )
     agents = np.flatnonzero(bare)
-    found.append(_kept(scene.position[e, agents] - place, scene.radius[e, agents], agents, scene, e))
-    return found
+    arcs.append(_kept(scene.position[e, agents] - place, scene.radius[e, agents], agents, scene, e))
+    return arcs
 
 
 def _kept(centre: Floats, size: Floats, owner: Ints, scene: Scene, e: int) -> Arcs:

@@ -46,7 +46,7 @@ def check_sensor(sensor: Sensor, renderer: ImageSource | None = None) -> None:
         raise InputError(f"{name} is not frozen; decorate the class with @dataclass(frozen=True, kw_only=True)")
     views = [SensorView(_scene(time), _pose(time), renderer) for time in (0.0, 0.1, 0.2)]
     readings = _sequence(sensor, views)
-    if not all(_same(one, other) for one, other in zip(readings, _sequence(sensor, views), strict=True)):
+    if not all(_same(reading, other) for reading, other in zip(readings, _sequence(sensor, views), strict=True)):
         raise InputError(f"{name}.measure is not deterministic: the same input gave another reading")
     for view, time in zip(views, (0.0, 0.1, 0.2), strict=True):
         if not _same(view.scene.position, _scene(time).position) or not _same(view.pose.position, _pose(time).position):
@@ -55,8 +55,8 @@ def check_sensor(sensor: Sensor, renderer: ImageSource | None = None) -> None:
         quiet = dataclasses.replace(sensor, noise=())
         alone = [SensorView(view.scene.environments([0]), Pose.of((0.0, 0.0), view.time)) for view in views]
         own = [stream(1, "contract", e) for e in range(2)], [stream(1, "contract", 0)]
-        for both, one in zip(_sequence(quiet, views, own[0]), _sequence(quiet, alone, own[1]), strict=True):
-            _check_alone(name, one, both)
+        for both, item in zip(_sequence(quiet, views, own[0]), _sequence(quiet, alone, own[1]), strict=True):
+            _check_alone(name, item, both)
         _check_batch(sensor)
 
 

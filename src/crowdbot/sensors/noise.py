@@ -44,15 +44,15 @@ class Noise(ABC):
         Raises:
             InputError: a noise is unknown, or its numbers are wrong.
         """
-        found: list[Noise] = []
+        noises: list[Noise] = []
         place = 0
         while text[place:].strip():
             term = TERM.match(text, place)
             if term is None:
                 raise InputError(f"noise {text!r} must be a list of name(number, ...), such as gaussian(0.01)")
-            found.append(_made(term.group(1), term.group(2), text))
+            noises.append(_made(term.group(1), term.group(2), text))
             place = term.end()
-        return tuple(found)
+        return tuple(noises)
 
     def __str__(self) -> str:
         """Return the text that :meth:`parse` reads."""

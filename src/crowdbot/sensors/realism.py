@@ -351,7 +351,7 @@ class PulsedLidar2D(Lidar2D):
             part = scene if same else scene.environments([e])
             there = SpatialPose(pose.position[these], pose.rotation[these])
             rows.append(self._through_glass(part, there, aimed + float(turn[e])))
-        return _Rays(*(np.concatenate(list(one)) for one in zip(*rows, strict=True)))
+        return _Rays(*(np.concatenate(list(item)) for item in zip(*rows, strict=True)))
 
     def _through_glass(self, scene: Scene, pose: SpatialPose, aimed: Floats) -> _Rays:
         rays = self._rays(scene, pose, aimed)
@@ -363,7 +363,7 @@ class PulsedLidar2D(Lidar2D):
         behind = self._rays(scene.replace(walls=clear), pose, aimed)
         glass = behind.distance > rays.distance + 1e-9
         passes = glass & (rays.cosine < SPECULAR)
-        found: list[Any] = [np.where(passes, two, one) for one, two in zip(rays, behind, strict=True)]
+        found: list[Any] = [np.where(passes, two, ray) for ray, two in zip(rays, behind, strict=True)]
         power = np.where(glass & ~passes, rays.power * GLASS / REFLECTIVITY[WALL], found[-1])
         return _Rays(found[0], found[1], found[2], found[3], power)
 
@@ -372,7 +372,7 @@ class PulsedLidar2D(Lidar2D):
         hits = cast_rays(scene, pose, beams, self.range_max, skins=self.skins, normals=False)
         shape = (len(pose.position), *aimed.shape)
         distance, cosine, hit, part = (
-            one.reshape(shape) for one in (hits.distance, hits.cos_incidence, hits.hit, hits.part)
+            item.reshape(shape) for item in (hits.distance, hits.cos_incidence, hits.hit, hits.part)
         )
         white = np.full(shape, CLOTH)
         for code, value in REFLECTIVITY.items():
@@ -414,7 +414,7 @@ class PulsedLidar2D(Lidar2D):
         if rng is None:
             raise InputError("PulsedLidar2D: false returns need a random generator: pass rng=stream(seed, ...)")
         generators = [rng] * shape[0] if isinstance(rng, np.random.Generator) else list(rng)
-        draws = np.stack([one.random((2, *shape[1:])) for one in generators])
+        draws = np.stack([generator.random((2, *shape[1:])) for generator in generators])
         away = self.range_min + (self.range_max - self.range_min) * draws[:, 1]
         return np.asarray(np.where(draws[:, 0] < self.false_returns, away, np.inf))
 

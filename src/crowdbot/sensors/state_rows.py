@@ -140,12 +140,12 @@ def _pieces(state: Any, count: int) -> list[tuple[Ints, Any]]:
 
 def _chosen(state: StateGroups, rows: Ints) -> list[tuple[Ints, Ints, Any]]:
     """Return for each group the places in ``rows``, their rows in the state of the group, and this state."""
-    found = []
+    chosen = []
     for where, part in zip(state.environments, state.states, strict=True):
         places = np.flatnonzero(np.isin(rows, where))
         if len(places):
-            found.append((places, np.searchsorted(where, rows[places]), part))
-    return found
+            chosen.append((places, np.searchsorted(where, rows[places]), part))
+    return chosen
 
 
 def _grouped(pieces: list[tuple[Ints, Any]], count: int) -> Any:

@@ -271,11 +271,11 @@ def _lengths(given: float | None, default: float, true: float, scale: float = 1.
 
 def _mean_of_sides(values: NDArray[Any], geometry: WheelGeometry) -> list[Floats]:
     """Return the mean ``[E]`` of the wheels on the left, and on the right; of all if a side has none."""
-    found = []
+    mean_of_sides = []
     for side in (1, -1):
         chosen = geometry.sides == side
-        found.append(np.mean(values[:, chosen] if chosen.any() else values, axis=1))
-    return found
+        mean_of_sides.append(np.mean(values[:, chosen] if chosen.any() else values, axis=1))
+    return mean_of_sides
 
 
 def _first_encoders(wheels: WheelRotation | None) -> tuple[Floats | None, Floats | None]:

@@ -98,4 +98,4 @@ def trial_titles() -> dict[str, str]:
 def _files() -> dict[str, Traversable]:
     """Return the trial files of the package by name."""
     folder = importlib.resources.files("crowdbot").joinpath("assets", "trials")
-    return {one.name.removesuffix(".xml"): one for one in folder.iterdir() if one.name.endswith(".xml")}
+    return {item.name.removesuffix(".xml"): item for item in folder.iterdir() if item.name.endswith(".xml")}

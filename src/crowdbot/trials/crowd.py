@@ -69,7 +69,7 @@ class Crowds(Mixture):
         """Return the crowds of a model from :meth:`gather`."""
         if not isinstance(model, Crowds):
             return (Crowd(model=model),)
-        return tuple(Crowd(name=name, model=one) for name, one in zip(model.names, model.models, strict=True))
+        return tuple(Crowd(name=name, model=item) for name, item in zip(model.names, model.models, strict=True))
 
     @staticmethod
     def problems(crowds: Sequence[Crowd]) -> Iterator[tuple[int, str]]:

@@ -275,10 +275,10 @@ def _convert_children(element: Any, part: FieldSpec, value: Any) -> tuple[Any, .
     if part.required and not value:
         raise InputError(f"{name}: {part.name} is empty; it must hold at least one: {part.about}")
     kinds = tuple(part.elements.values())
-    for one in value:
-        if not isinstance(one, kinds):
+    for item in value:
+        if not isinstance(item, kinds):
             known = " or ".join(kind.__name__ for kind in kinds)
-            raise InputError(f"{name}: {part.name} holds a {type(one).__name__}, it takes {known}")
+            raise InputError(f"{name}: {part.name} holds a {type(item).__name__}, it takes {known}")
     return tuple(value)
 
 

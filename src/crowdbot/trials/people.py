@@ -136,7 +136,7 @@ class SourceSpec:
 
     def source(self, journeys: Sequence[Journey], crowds: Sequence[str]) -> world.PeopleSource:
         """Return the source of a world, given the journeys and the names of the crowds of the trial."""
-        named = next((one.journey() for one in journeys if one.name == self.journey), None)
+        named = next((journey.journey() for journey in journeys if journey.name == self.journey), None)
         goal = named or world.WaypointSequence((world.PolygonZone(self.goal, aim="random"),), self.arrival)
         return world.PeopleSource(
             world.PolygonZone(self.zone),

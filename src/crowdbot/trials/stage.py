@@ -139,7 +139,7 @@ class Stage:
     def rings(self) -> tuple[NDArray[np.float64], ...]:
         """Rings ``[N, 2]`` [m] as :meth:`crowdbot.core.Walls.of` takes them: solid on the left of each edge."""
         lines = [np.array(wall.points[k : k + 2]) for wall in self.walls for k in range(len(wall.points) - 1)]
-        solids = [_orient(one.points, counter_clockwise=True) for one in self.obstacles]
+        solids = [_orient(obstacle.points, counter_clockwise=True) for obstacle in self.obstacles]
         around = [_orient(self.walkable, counter_clockwise=False)] if self.walkable else []
         fixed = (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
         return (*fixed, *(prop.ring for prop in self.props))
@@ -162,9 +162,9 @@ class Stage:
         """Return props, lights and heights for the physics world."""
         from crowdbot.world import PhysicsStage, StageAppearance, read_building
 
-        props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
-        doors = tuple(one.leaf() for one in self.doors)
-        looks = [one.appearance() for one in self.appearance] or [StageAppearance()]
+        props, lights = tuple(prop.prop() for prop in self.props), tuple(light.light() for light in self.lights)
+        doors = tuple(door.leaf() for door in self.doors)
+        looks = [item.appearance() for item in self.appearance] or [StageAppearance()]
         return PhysicsStage(
             self.wall_height, self.friction, props, lights, ground=ground_of(self.ground), doors=doors,
             appearance=looks[0],

@@ -75,26 +75,26 @@ def sweep_problems(
         sweeps: the sweeps of the trial, which itself has no problem.
         others: function that returns the problems of a variant.
     """
-    found: list[tuple[Sweep, str]] = []
+    result: list[tuple[Sweep, str]] = []
     there = []
     for sweep in sweeps:
         try:
             set_value(copy.deepcopy(root), kind, sweep.path, "")
         except InputError as error:
-            found.append((sweep, f"{quote_value(sweep.path)} {error}"))
+            result.append((sweep, f"{quote_value(sweep.path)} {error}"))
         else:
             there.append(sweep)
     count = math.prod(len(sweep.each) for sweep in there)
     if count > MOST_VARIANTS:
-        return [*found, (there[-1], f"makes {count} variants together with other sweeps, at most {MOST_VARIANTS}")]
+        return [*result, (there[-1], f"makes {count} variants together with other sweeps, at most {MOST_VARIANTS}")]
     known: dict[str, None] = {}
     for row in itertools.islice(itertools.product(*(sweep.each for sweep in there)), CHECKED if there else 0):
         pairs = [*zip(there, row, strict=True)]
         for sentence in others(_with(root, kind, pairs))[:3]:
             if sentence not in known:
                 known[sentence] = None
-                found.append(_find_cause(root, kind, pairs, sentence, others))
-    return found
+                result.append(_find_cause(root, kind, pairs, sentence, others))
+    return result
 
 
 def _find_cause(

@@ -191,7 +191,7 @@ class Trial:
 
         Their indices come in this order, before those of robots.
         """
-        recorded = sum(len(one.walks(self.duration)) for one in self.recorded)
+        recorded = sum(len(item.walks(self.duration)) for item in self.recorded)
         return len(self.agents) + sum(spawner.count for spawner in self.spawners) + len(self.avatars) + recorded
 
     @property

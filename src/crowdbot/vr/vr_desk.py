@@ -575,7 +575,7 @@ class VrDesk(Desk):
     def _body_of(self, avatar: str) -> tuple[str, float]:
         """Return the name of the body of an avatar, and its stature over the height of its eyes."""
         if self._in_experiment:
-            specs = [item for trial in self._experiment_trials() for item in trial.avatars if one.name == avatar]
+            specs = [item for trial in self._experiment_trials() for item in trial.avatars if item.name == avatar]
             name = next((spec.body for spec in specs if spec.body), "mannequin")
             size = BodySize.of(People.of([name]))
         else:

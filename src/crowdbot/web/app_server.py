@@ -141,7 +141,9 @@ class AppServer:
             connections = [] if runner.server is None else runner.server.connections
             transports = [connection.transport for connection in connections]
             await runner.cleanup()
-            closing = [asyncio.wrap_future(DeskThread("closing").call(one.close)) for one in self.sessions.values()]
+            closing = [
+                asyncio.wrap_future(DeskThread("closing").call(session.close)) for session in self.sessions.values()
+            ]
             if closing:  # a desk that is still busy then ends with the program
                 await asyncio.wait(closing, timeout=CLOSING)
             self.sessions.clear()
@@ -164,7 +166,7 @@ class AppServer:
         """End sessions that nobody uses; their files stay, and the next window of that name begins anew."""
         while True:
             await asyncio.sleep(min(SWEEP, self.limits.idle / 2))
-            for name in [name for name, one in self.sessions.items() if one.idle > self.limits.idle]:
+            for name in [name for name, session in self.sessions.items() if session.idle > self.limits.idle]:
                 session = self.sessions.pop(name)
                 await asyncio.wrap_future(DeskThread("closing").call(session.close))
 

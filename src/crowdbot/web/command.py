@@ -63,13 +63,13 @@ def call_command(desk: object, name: str, arguments: Mapping[str, Any]) -> Any:
         names = command_names(desk)
         raise InputError(f"command {name!r} does not exist{did_you_mean(name, names)}; commands: {', '.join(names)}")
     assert method is not None
-    parameters = {key: one for key, one in inspect.signature(method).parameters.items() if key != "self"}
+    parameters = {key: parameter for key, parameter in inspect.signature(method).parameters.items() if key != "self"}
     hints = typing.get_type_hints(method)
     if unknown := sorted(set(arguments) - set(parameters)):
         raise InputError(f"{name}: argument {unknown[0]!r} is unknown; arguments: {', '.join(parameters) or 'none'}")
-    for key, one in parameters.items():
+    for key, parameter in parameters.items():
         if key not in arguments:
-            if one.default is inspect.Parameter.empty:
+            if parameter.default is inspect.Parameter.empty:
                 raise InputError(f"{name}: argument {key!r} is missing")
         elif not _fits(arguments[key], hints[key]):
             raise InputError(f"{name}: {key} = {arguments[key]!r:.80}: expected {_word(hints[key])}")
@@ -80,7 +80,7 @@ def _fits(value: Any, hint: Any) -> bool:
     if hint is Any:
         return True
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        return any(_fits(value, one) for one in typing.get_args(hint))
+        return any(_fits(value, argument) for argument in typing.get_args(hint))
     if hint is types.NoneType:
         return value is None
     if isinstance(value, bool):
@@ -90,12 +90,12 @@ def _fits(value: Any, hint: Any) -> bool:
     if not isinstance(value, typing.get_origin(hint) or hint):
         return False
     parts = typing.get_args(hint) if isinstance(value, list) else ()
-    return all(_fits(one, part) for part in parts for one in value)
+    return all(_fits(item, part) for part in parts for item in value)
 
 
 def _word(hint: Any) -> str:
     if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        return " or ".join(_word(one) for one in typing.get_args(hint))
+        return " or ".join(_word(argument) for argument in typing.get_args(hint))
     if typing.get_origin(hint) is list and Any not in typing.get_args(hint):
         return f"a list, each {_word(typing.get_args(hint)[0])}"
     return "nothing" if hint is types.NoneType else WORDS.get(typing.get_origin(hint) or hint, "a value")

@@ -20,9 +20,9 @@ def clean_json(value: Any) -> Any:
     if isinstance(value, float):
         return plain_number(value)
     if isinstance(value, dict):
-        return {key: clean_json(one) for key, one in value.items()}
+        return {key: clean_json(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [clean_json(one) for one in value]
+        return [clean_json(item) for item in value]
     return (
         clean_json(dataclasses.asdict(value))
         if dataclasses.is_dataclass(value) and not isinstance(value, type)

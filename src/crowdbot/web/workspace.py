@@ -41,7 +41,7 @@ class Workspace:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder.resolve()
         self.limit = limit
-        self.readable_folders = (self.folder, *(one.resolve() for one in readable))
+        self.readable_folders = (self.folder, *(item.resolve() for item in readable))
 
     def readable(self, name: str) -> Path:
         """Return the path of a file that may be read.
@@ -50,7 +50,9 @@ class Workspace:
             InputError: the file is outside the folders or does not exist.
         """
         path = self._resolve(name)
-        if not any(path.is_relative_to(one) for one in self.readable_folders) or self._is_of_others(path):
+        if not any(
+            path.is_relative_to(readable_folder) for readable_folder in self.readable_folders
+        ) or self._is_of_others(path):
             raise InputError(f"file {name!r} is outside the folder of the app")
         if not path.is_file():
             raise InputError(f"file {name!r} does not exist in {self.folder.name}")
@@ -71,13 +73,13 @@ class Workspace:
 
     def files(self, pattern: str = "*") -> list[str]:
         """Return the names of the files of the folder that match, relative to it, at most 1 000."""
-        found = (one.relative_to(self.folder) for one in sorted(self.folder.rglob(pattern)) if one.is_file())
+        found = (item.relative_to(self.folder) for item in sorted(self.folder.rglob(pattern)) if item.is_file())
         shown = (
             one.as_posix()
             for one in found
             if one.parts[0] != SESSIONS and not any(part.startswith(".") for part in one.parts)
         )
-        return [one for _, one in zip(range(1000), shown, strict=False)]
+        return [item for _, item in zip(range(1000), shown, strict=False)]
 
     def trials(self) -> list[str]:
         """Return the names of the trial files, and of those that are no XML, which a user can mend."""
@@ -102,13 +104,13 @@ class Workspace:
         total, folders = 0, [self.folder]
         while folders:
             with contextlib.suppress(OSError), os.scandir(folders.pop()) as entries:
-                for one in entries:
-                    if one.is_dir(follow_symlinks=False):
-                        if one.path != str(self.folder / SESSIONS):
-                            folders.append(Path(one.path))
+                for entry in entries:
+                    if entry.is_dir(follow_symlinks=False):
+                        if entry.path != str(self.folder / SESSIONS):
+                            folders.append(Path(entry.path))
                     else:
                         with contextlib.suppress(OSError):
-                            total += one.stat(follow_symlinks=False).st_size
+                            total += entry.stat(follow_symlinks=False).st_size
         return total
 
     def check_space(self, more: float = 0.0) -> None:

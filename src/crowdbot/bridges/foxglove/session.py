@@ -101,12 +101,12 @@ class FoxgloveGraph:
     def change(self, interface: RobotInterface) -> None:
         """Announce another trial to the clients, whose views then begin anew; kept topics stay subscribed."""
         self.interface, self._session = interface, uuid.uuid4().hex
-        self.outputs = {one.name: one for one in interface.outputs if self.allows(one.name)}
+        self.outputs = {output.name: output for output in interface.outputs if self.allows(output.name)}
         gone = [topic for topic, (_, kind) in self.channels.items() if self._kind(topic) != kind]
         numbers = [self.channels.pop(topic)[0] for topic in gone]
         new = [topic for topic in self.outputs if topic not in self.channels]
         self.channels |= {topic: (next(self._numbers), self.outputs[topic].kind) for topic in new}
-        self.latched = {topic: one for topic, one in self.latched.items() if topic in self.channels}
+        self.latched = {topic: item for topic, item in self.latched.items() if topic in self.channels}
         for session in self.sessions:
             session.forget(gone)
             session.reply(self.server_info())
@@ -116,22 +116,24 @@ class FoxgloveGraph:
 
     def deliver(self, messages: Sequence[StepMessage]) -> None:
         """Give messages to the clients that subscribe their topics; ``/clock`` is also the time of all clients."""
-        for one in messages:
-            if one.topic in self.outputs and self.outputs[one.topic].quality.latched:
-                self.latched[one.topic] = one
-            if one.topic == "/clock":
-                self.now = one.nanoseconds
+        for message in messages:
+            if message.topic in self.outputs and self.outputs[message.topic].quality.latched:
+                self.latched[message.topic] = message
+            if message.topic == "/clock":
+                self.now = message.nanoseconds
             for session in self.sessions:
-                session.offer(one)
+                session.offer(message)
 
     def allows(self, name: str) -> bool:
         """Return whether clients may use a topic or service."""
-        return self.allowed is None or any(fnmatch.fnmatchcase(name, one) for one in self.allowed)
+        return self.allowed is None or any(fnmatch.fnmatchcase(name, item) for item in self.allowed)
 
     def collect_subscriptions(self) -> None:
         """Collect the topics that clients subscribe; a client that sends commands wants the time."""
         wanted = {topic for session in self.sessions for topic in session.subscriptions.values()}
-        self.wanted = frozenset(wanted | {"/clock"} if any(one.has_channels for one in self.sessions) else wanted)
+        self.wanted = frozenset(
+            wanted | {"/clock"} if any(session.has_channels for session in self.sessions) else wanted
+        )
 
     def server_info(self) -> dict[str, Any]:
         """Return what a client is told first."""
@@ -250,7 +252,7 @@ class FoxgloveSession:
             frames.append(struct.pack("<BQ", TIME, self._time))
             self._time = None
         for number, waiting in self._waiting.items():
-            frames += [struct.pack("<BIQ", MESSAGE, number, one.nanoseconds) + one.cdr for one in waiting]
+            frames += [struct.pack("<BIQ", MESSAGE, number, item.nanoseconds) + item.cdr for item in waiting]
             waiting.clear()
         return frames, None
 
@@ -299,7 +301,7 @@ class FoxgloveSession:
 
     def _advertise(self, row: Mapping[str, Any]) -> None:
         number, topic, encoding, kind = (row[name] for name in ("id", "topic", "encoding", "schemaName"))
-        if not all(isinstance(one, str) and len(one) < 200 for one in (topic, encoding, kind)):
+        if not all(isinstance(item, str) and len(item) < 200 for item in (topic, encoding, kind)):
             raise InputError("a channel needs topic, encoding and schemaName, each a text below 200 characters")
         if len(self._channels) >= MOST_ROWS:
             raise InputError(f"{MOST_ROWS} channels are too many")

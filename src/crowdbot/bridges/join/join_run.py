@@ -163,10 +163,10 @@ class JoinPort(BridgePort):
             kinds = ("nav_msgs/msg/Odometry",)
             inputs.append(OdometryInput(self.odometry, kinds, name, SENSOR, "odometry", self._take_pose))
         guarded = OutputTopic(self.command, TWIST, "", 1.0 / PERIOD, COMMAND, name, "guarded velocity")
-        taken = {one.name for one in inputs} | {guarded.name}
-        if self.command in {one.name for one in inputs}:
+        taken = {input_topic.name for input_topic in inputs} | {guarded.name}
+        if self.command in {input_topic.name for input_topic in inputs}:
             raise InputError(f"{self.command} is an input; take another topic for the commands to the robot")
-        outputs = tuple(one for one in whole.outputs if one.name not in taken)
+        outputs = tuple(output for output in whole.outputs if output.name not in taken)
         return dataclasses.replace(whole, outputs=(*outputs, guarded), inputs=tuple(inputs), services=())
 
     def _take_pose(self, x: float, y: float, heading: float) -> None:
@@ -210,22 +210,22 @@ class JoinPort(BridgePort):
     def begin(self, simulation: Simulation) -> None:
         """Send the first instant, then ask motion capture again: the poses of before are as old as this has taken."""
         super().begin(simulation)
-        for one in self.captures:
-            one.orders(simulation)
+        for capture in self.captures:
+            capture.orders(simulation)
 
     def serve(self, simulation: Simulation) -> None:
         """Let commands leave, in every round of the loop."""
         super().serve(simulation)
         wanted: list[VelocityOrder] = []
-        for one in self.inbox.take_orders():
-            if isinstance(one, VelocityOrder) and one.robot == self.robot.name:
-                wanted.append(one)
+        for order in self.inbox.take_orders():
+            if isinstance(order, VelocityOrder) and order.robot == self.robot.name:
+                wanted.append(order)
             else:
-                self.inbox.add(one)
+                self.inbox.add(order)
         now = self.monotonic()
         with self._lock:
-            for one in wanted:
-                self.guard.note_command(Twist(one.forward, one.turn, one.left), now)
+            for item in wanted:
+                self.guard.note_command(Twist(item.forward, item.turn, item.left), now)
         if wanted or now >= self._next:
             self.send_command(simulation.world.clock.nanoseconds)
             self._delays.extend([self.monotonic() - now] * len(wanted))
@@ -249,16 +249,16 @@ class JoinPort(BridgePort):
 
     def take_orders(self, simulation: Simulation) -> list[Order]:
         """Return the orders for the current instant, with the pose of the robot."""
-        found = super().take_orders(simulation)
+        orders = super().take_orders(simulation)
         with self._lock:
             latest, self._latest = self._latest, None
         if latest is None or not self.odometry:
-            return found
+            return orders
         age = self.monotonic() - latest[0]
         self._ages.append(age)
         now = float(simulation.world.times[0])
         (x, y, heading), when = latest[1], round(max(0.0, now - age), 6)
-        return [*found, RobotPoseOrder(robot=self.robot.name, time=when, x=x, y=y, heading=heading, source="join")]
+        return [*orders, RobotPoseOrder(robot=self.robot.name, time=when, x=x, y=y, heading=heading, source="join")]
 
     def stop(self) -> None:
         """Let the robot stand, and close all transports."""
@@ -293,7 +293,7 @@ def joined_trial(trial: Trial, robot: str = "") -> Trial:
     >>> joined_trial(load_trial("frontal")).robots[0].pose.source
     'external'
     """
-    names = [one.name for one in trial.robots]
+    names = [robot.name for robot in trial.robots]
     if not robot and len(names) != 1:
         raise InputError(f"trial {trial.name!r} has {len(names)} robots; name one of {', '.join(names) or 'none'}")
     chosen = robot or names[0]
@@ -301,7 +301,7 @@ def joined_trial(trial: Trial, robot: str = "") -> Trial:
         raise InputError(f"trial {trial.name!r} has no robot {chosen!r}{did_you_mean(chosen, names)}")
     pose = RobotPose(source="external")
     changes: dict[str, Any] = {"navigator": ExternalNavigator(), "pose": pose, "safety": None, "deadline": None}
-    robots = tuple(dataclasses.replace(one, **changes) if one.name == chosen else one for one in trial.robots)
+    robots = tuple(dataclasses.replace(robot, **changes) if robot.name == chosen else robot for robot in trial.robots)
     return dataclasses.replace(trial, robots=robots)
 
 
@@ -313,11 +313,11 @@ class _Watch:
 
     def orders(self, simulation: Any) -> list[Order]:
         """Return the orders of the source."""
-        found = list(self.source.orders(simulation))
-        for one in found:
+        result = list(self.source.orders(simulation))
+        for one in result:
             if isinstance(one, RobotPoseOrder) and one.robot == self.port.robot.name:
                 self.port.note_pose(one.x, one.y, one.heading)
-        return found
+        return result
 
 
 class JoinRun(BridgeRun):
@@ -354,10 +354,10 @@ class JoinRun(BridgeRun):
     ) -> None:
         trial = joined_trial(trial, robot)
         super().__init__(trial, transports, seed, out, BridgeClock(), force, note)
-        spec = next(one for one in trial.robots if one.name == (robot or trial.robots[0].name))
+        spec = next(item for item in trial.robots if item.name == (robot or trial.robots[0].name))
         self.port = JoinPort(trial, transports, spec, guard, odometry, command, self.note)
         self.port.control = self.control
-        self.sources = self.port.captures = [_Watch(one, self.port) for one in sources]
+        self.sources = self.port.captures = [_Watch(source, self.port) for source in sources]
 
     def remarks(self) -> list[str]:
         """Return lines for people: latencies and stops."""
@@ -368,4 +368,4 @@ class JoinRun(BridgeRun):
             f"{known.commands} commands passed on after {1e3 * known.command_delay[0]:.2f} ms (median),"
             f" {1e3 * known.command_delay[1]:.2f} ms (99 %)" if known.commands else "no commands",
         ]  # fmt: skip
-        return found + [f"stopped: {one}" for one in guard.stops if one != "the run has ended"]
+        return found + [f"stopped: {stop}" for stop in guard.stops if stop != "the run has ended"]

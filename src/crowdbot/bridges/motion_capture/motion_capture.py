@@ -52,7 +52,7 @@ class MotionBinding:
     heading: float = 0.0
 
     def __post_init__(self) -> None:
-        if not all(math.isfinite(one) and abs(one) <= 1e5 for one in (self.x, self.y, self.heading)):
+        if not all(math.isfinite(item) and abs(item) <= 1e5 for item in (self.x, self.y, self.heading)):
             raise InputError(f"the origin {self.x:g}, {self.y:g}, {self.heading:g} of {self.target!r} must be finite")
 
 
@@ -94,11 +94,11 @@ class MotionCapture:
 
     def unbound(self, names: Sequence[str]) -> tuple[str, ...]:
         """Return the targets that are not among some names."""
-        return tuple(one.target for one in self.bindings if one.target not in names)
+        return tuple(binding.target for binding in self.bindings if binding.target not in names)
 
     def check(self, trial: Trial) -> None:
         """Raise :class:`InputError` if a target is not an external avatar or mirrored robot of the trial."""
-        mirrors = [(one.name, one.mirror) for one in trial.robots]
+        mirrors = [(robot.name, robot.mirror) for robot in trial.robots]
         robots = [name for name, mirror in mirrors if mirror is not None and mirror.source == "external"]
         avatars = [avatar.name for avatar in trial.avatars if avatar.source == "external"]
         known = [*avatars, *robots]
@@ -110,10 +110,10 @@ class MotionCapture:
 
     def remarks(self) -> list[str]:
         """Return a line for each binding: number and rate of its samples, losses, and how old they were when used."""
-        found = []
+        result = []
         latency = self.stream.latency()
-        for one in self.bindings:
-            known = self.stream.statistics(one.subject)
+        for binding in self.bindings:
+            known = self.stream.statistics(binding.subject)
             parts = [f"{known.samples} samples", f"{known.rate:.1f} Hz"]
             if self.stream.live:
                 parts += [f"{known.lost} lost", f"{known.refused} datagrams refused"]
@@ -121,8 +121,8 @@ class MotionCapture:
                 parts.append(f"age median {1e3 * latency[0]:.1f} ms, p99 {1e3 * latency[1]:.1f} ms")
             reason = known.reason or self.reason
             refused = f"; {self.refused} are no pose" if self.refused else ""
-            found.append(f"{one.target}: {', '.join(parts)}{refused}{f' ({reason})' if reason else ''}")
-        return found
+            result.append(f"{binding.target}: {', '.join(parts)}{refused}{f' ({reason})' if reason else ''}")
+        return result
 
     def orders(self, simulation: Any) -> list[Order]:
         """Return the poses for this step."""
@@ -131,23 +131,23 @@ class MotionCapture:
             self._bodies, self._ready = _avatar_bodies(simulation), True
         now = float(simulation.world.times[0])
         ahead = now + float(simulation.trial.step)
-        found: list[Order] = []
+        result: list[Order] = []
         for binding in self.bindings:
             samples = self.stream.read(binding.subject, now, ahead)
-            samples = [(time, one) for time, one in samples if time <= now + AHEAD]
+            samples = [(time, item) for time, item in samples if time <= now + AHEAD]
             if not samples:
                 continue
             try:
-                found.append(self._order(binding, samples, ahead))
+                result.append(self._order(binding, samples, ahead))
             except InputError as error:  # for instance an actor far below the floor
                 self.refused, self.reason = self.refused + 1, str(error)
-        return found
+        return result
 
     def _order(self, binding: MotionBinding, samples: list[tuple[float, MotionSample]], ahead: float) -> Order:
         poses = [self._pose(binding, sample) for _, sample in samples]
         time, pose = samples[-1][0], poses[-1]
         if len(samples) > 1 and samples[0][0] <= ahead + EARLY and ahead <= time:
-            time, pose = ahead, PoseTrack.of([one for one, _ in samples], poses).at(ahead)
+            time, pose = ahead, PoseTrack.of([item for item, _ in samples], poses).at(ahead)
         how: dict[str, Any] = {"time": round(time, 6), "x": pose.x, "y": pose.y, "heading": pose.heading}
         if binding.target in self._bodies:
             return AvatarOrder(avatar=binding.target, skeleton=pose.skeleton, source="mocap", **how)
@@ -161,7 +161,7 @@ class MotionCapture:
         if sample.skeleton is not None and binding.target in self._bodies:
             return self._fit(binding.target, sample.skeleton).pose(sample.number, sample.time, position, rotation)
         k = 0 if sample.skeleton is None else sample.skeleton.roles["pelvis"]
-        x, y = (round(float(one), 6) for one in position[k, :2])
+        x, y = (round(float(item), 6) for item in position[k, :2])
         return BodyPose(x, y, round(wrap_angle(yaw_of(rotation[k])), 6))
 
     def _fit(self, target: str, skeleton: SourceSkeleton) -> FootLock:
@@ -254,7 +254,7 @@ def parse_captures(texts: Sequence[str], trial: Trial) -> list[MotionCapture]:
     for text in texts:
         address, binding = parse_binding(text)
         found.setdefault(address, []).append(binding)
-    targets = [one.target for bindings in found.values() for one in bindings]
+    targets = [binding.target for bindings in found.values() for binding in bindings]
     for name in targets:
         if targets.count(name) > 1:
             raise InputError(f"motion capture moves {name!r} twice")
@@ -263,9 +263,9 @@ def parse_captures(texts: Sequence[str], trial: Trial) -> list[MotionCapture]:
         capture = MotionCapture(open_stream(address), bindings)
         capture.check(trial)
         known = capture.stream.subjects()
-        for one in bindings:
-            if not capture.stream.live and one.subject and one.subject not in known:
-                raise InputError(f"{address} has no subject {one.subject!r}; it has {', '.join(known)}")
+        for item in bindings:
+            if not capture.stream.live and item.subject and item.subject not in known:
+                raise InputError(f"{address} has no subject {item.subject!r}; it has {', '.join(known)}")
         captures.append(capture)
     return captures
 
@@ -345,7 +345,7 @@ class CaptureSet:
     @property
     def live(self) -> bool:
         """Whether a stream comes in real time."""
-        return any(one.live for one in self.streams.values())
+        return any(stream.live for stream in self.streams.values())
 
     def add(self, text: str) -> None:
         """Open a stream, such as ``xsens:9763=guest``, and bind a target to it.
@@ -379,9 +379,9 @@ class CaptureSet:
 
     def stream_of(self, target: str) -> tuple[PoseStream, str] | None:
         """Return the stream of a target and the name of its subject; None: it is not moved."""
-        found = next((pair for pair in tuple(self._bindings.values()) if pair[1].target == target), None)
-        stream = None if found is None else self.streams.get(found[0])
-        return None if found is None or stream is None else (stream, found[1].subject)
+        binding = next((pair for pair in tuple(self._bindings.values()) if pair[1].target == target), None)
+        stream = None if binding is None else self.streams.get(binding[0])
+        return None if binding is None or stream is None else (stream, binding[1].subject)
 
     def captures_of(self, trial: Trial, leave: Sequence[str] = (), origin: Origin | None = None) -> list[MotionCapture]:
         """Return what moves avatars and mirrored robots of a trial; targets that it lacks are left out.
@@ -391,8 +391,10 @@ class CaptureSet:
             leave: names of targets that are moved in another way.
             origin: returns x, y [m] and heading [rad] of the origin of systems whose text has no ``@``.
         """
-        mirrors = {one.name for one in trial.robots if one.mirror is not None and one.mirror.source == "external"}
-        known = {one.name for one in trial.avatars if one.source == "external"} | mirrors
+        mirrors = {
+            robot.name for robot in trial.robots if robot.mirror is not None and robot.mirror.source == "external"
+        }
+        known = {avatar.name for avatar in trial.avatars if avatar.source == "external"} | mirrors
         found: dict[str, list[MotionBinding]] = {}
         for text, (address, binding) in tuple(self._bindings.items()):
             if binding.target not in known or binding.target in leave:

@@ -75,11 +75,11 @@ class Packet:
     def values(self, form: str) -> tuple[Any, ...]:
         """Return values in a little-endian ``struct`` format."""
         try:
-            found = struct.unpack_from(f"<{form}", self.data, self.place)
+            result = struct.unpack_from(f"<{form}", self.data, self.place)
         except struct.error:
             raise BadDatagram("a packet ends too early") from None
         self.place += struct.calcsize(f"<{form}")
-        return found
+        return result
 
     def number(self) -> int:
         """Return a 32-bit integer."""
@@ -87,10 +87,10 @@ class Packet:
 
     def count(self) -> int:
         """Return a number of items that are in the packet."""
-        found = self.number()
-        if not 0 <= found <= MOST_ITEMS:
-            raise BadDatagram(f"a packet says that it has {found} items")
-        return found
+        result = self.number()
+        if not 0 <= result <= MOST_ITEMS:
+            raise BadDatagram(f"a packet says that it has {result} items")
+        return result
 
     def name(self) -> str:
         """Return a text that ends with a zero byte."""
@@ -99,7 +99,7 @@ class Packet:
             raise BadDatagram("a packet has a name without an end")
         text = self.data[self.place : end].decode("utf-8", errors="replace")
         self.place = end + 1
-        return "".join(one for one in text if one.isprintable())
+        return "".join(item for item in text if item.isprintable())
 
     def skip(self, size: int) -> None:
         """Pass over bytes."""
@@ -206,7 +206,7 @@ def _read_body(packet: Packet) -> Body:
 
 
 def _finite(values: tuple[float, ...]) -> tuple[float, ...]:
-    if not all(abs(one) <= 1e12 for one in values):
+    if not all(abs(value) <= 1e12 for value in values):
         raise BadDatagram("a packet has values that are not finite")
     return values
 
@@ -351,7 +351,7 @@ class NatNetStream(ServerStream):
 
     def _describe(self, data: bytes) -> None:
         bodies, skeletons = read_descriptions(data, self.info.version if self.info else (3, 0))
-        self._names = {one.number: one.name for one in bodies}
+        self._names = {body.number: body.name for body in bodies}
         found = {}
         for number, (name, bones) in skeletons.items():
             skeleton = self._skeleton(name, bones)
@@ -373,7 +373,7 @@ class NatNetStream(ServerStream):
             raise BadDatagram(f"skeleton {name!r} has no bones")
         rest -= [*rest[0, :2], rest[:, 2].min() - 0.02]
         try:
-            return SourceSkeleton(tuple(_long_name(one) for one in names), tuple(parents), rest)
+            return SourceSkeleton(tuple(_long_name(name) for name in names), tuple(parents), rest)
         except InputError as error:
             raise BadDatagram(f"{name!r}: {error}") from None
 
@@ -389,10 +389,10 @@ class NatNetStream(ServerStream):
     def _skeleton_sample(self, number: int, bones: list[Body], frame: Frame) -> tuple[str, MotionSample]:
         name, numbers, skeleton, offsets = self._skeletons[number]
         own = {bone.number & 0xFFFF: bone for bone in bones}
-        missing = [one for one in numbers if one not in own]
+        missing = [number for number in numbers if number not in own]
         if missing:
             raise BadDatagram(f"a frame lacks {len(missing)} bones of {name!r}")
-        ordered = [own[one] for one in numbers]
+        ordered = [own[number] for number in numbers]
         position, rotation = self._poses(ordered)
         places = np.array([bone.position for bone in ordered])
         if np.all(np.abs(places[1:] - offsets[1:]) < LOCAL_OFFSET):

@@ -50,7 +50,7 @@ def to_quaternions(matrices: Floats) -> Floats:
 def rotate_about(axis: Floats | list[float], angle: float) -> Floats:
     """Return the rotation matrix about a unit vector by an angle [rad]."""
     half = math.sin(0.5 * angle)
-    return to_matrices(np.array([math.cos(0.5 * angle), *(half * float(one) for one in axis)]))
+    return to_matrices(np.array([math.cos(0.5 * angle), *(half * float(item) for item in axis)]))
 
 
 def align_vectors(first: Floats, second: Floats) -> Floats:
@@ -144,14 +144,14 @@ class SourceSkeleton:
     @property
     def roles(self) -> dict[str, int]:
         """Index of the joint of ``pelvis``, ``chest``, ``head``, ``hand_l`` and so on."""
-        found: dict[str, int] = self._roles  # type: ignore[attr-defined]
-        return found
+        result: dict[str, int] = self._roles  # type: ignore[attr-defined]
+        return result
 
     @property
     def spine(self) -> tuple[int, ...]:
         """Joints above the pelvis up to the chest, from below; empty if arms start at the pelvis."""
-        found: tuple[int, ...] = self._spine  # type: ignore[attr-defined]
-        return found
+        result: tuple[int, ...] = self._spine  # type: ignore[attr-defined]
+        return result
 
     def leg_length(self, side: str) -> float:
         """Return the length of the leg from hip to ankle of a side, ``l`` or ``r`` [m]."""
@@ -166,7 +166,7 @@ class SourceSkeleton:
         return way if float(np.linalg.norm(way)) > 1e-3 else None
 
     def _limb(self, side: str, word: str, ends: tuple[str, ...], roles: Sequence[str]) -> dict[str, int]:
-        wanted = {f"{a}{b}" for one in ends for a, b in ((word, one), (side, one), (one, word), (one, side))}
+        wanted = {f"{a}{b}" for end in ends for a, b in ((word, end), (side, end), (end, word), (end, side))}
         found = [k for k, name in enumerate(self.names) if plain_name(name) in wanted]
         if not found:
             raise InputError(f"a skeleton has no joint such as {word.title()}{ends[0].title()}; "
@@ -183,24 +183,24 @@ class SourceSkeleton:
 
     def _extras(self, roles: dict[str, int], chest: int) -> dict[str, int]:
         """Return the neck, collar bones and toes, where they are."""
-        found: dict[str, int] = {}
+        extras: dict[str, int] = {}
         neck = self.parents[roles["head"]]
         if neck not in (-1, chest):
-            found["neck"] = neck
+            extras["neck"] = neck
         for side in "lr":
             collar = self.parents[roles[f"upperarm_{side}"]]
             if collar not in (-1, chest):
-                found[f"clavicle_{side}"] = collar
+                extras[f"clavicle_{side}"] = collar
             toes = [c for c, parent in enumerate(self.parents) if parent == roles[f"foot_{side}"]]
             if toes and "end" not in plain_name(self.names[toes[0]]):
-                found[f"ball_{side}"] = toes[0]
-        return found
+                extras[f"ball_{side}"] = toes[0]
+        return extras
 
     def _line(self, k: int) -> list[int]:
-        found = [k]
-        while self.parents[found[-1]] >= 0:
-            found.append(self.parents[found[-1]])
-        return found
+        line = [k]
+        while self.parents[line[-1]] >= 0:
+            line.append(self.parents[line[-1]])
+        return line
 
     def _common(self, a: int, b: int) -> int:
         """Return the lowest joint above both."""
@@ -243,10 +243,12 @@ def body_axes(names: Sequence[str], parents: Sequence[int], rest: Floats) -> Flo
     size = float(np.linalg.norm(np.ptp(rest, axis=0)))
     if not 0.0 < size < float("inf"):
         raise InputError("a skeleton has no extent in the rest pose")
-    found = SourceSkeleton(tuple(names), tuple(parents), rest * (1.9 / size))
-    left = found.rest[found.roles["thigh_l"]] - found.rest[found.roles["thigh_r"]]
-    up = found.rest[found.roles["head"]] - found.rest[found.roles["pelvis"]]
-    y, z = (np.sign(one) * (np.arange(3) == int(np.argmax(np.abs(one)))) for one in (left, up))
+    source_skeleton = SourceSkeleton(tuple(names), tuple(parents), rest * (1.9 / size))
+    left = (
+        source_skeleton.rest[source_skeleton.roles["thigh_l"]] - source_skeleton.rest[source_skeleton.roles["thigh_r"]]
+    )
+    up = source_skeleton.rest[source_skeleton.roles["head"]] - source_skeleton.rest[source_skeleton.roles["pelvis"]]
+    y, z = (np.sign(item) * (np.arange(3) == int(np.argmax(np.abs(item)))) for item in (left, up))
     if float(y @ z) != 0.0 or not np.any(left) or not np.any(up):
         raise InputError("a skeleton does not stand in the rest pose: its hips are not beside each other")
     return np.stack([np.cross(y, z), y, z])
@@ -308,8 +310,8 @@ class Retargeting:
         above = whole[np.maximum(parents, 0)]
         above[0] = rotate_about([0.0, 0.0, 1.0], heading)
         bones = to_quaternions(np.swapaxes(above, -1, -2) @ whole)
-        x, y, z = (round(float(one), DIGITS) for one in pelvis)
-        numbers = [x, y, z, *(round(one, DIGITS) for one in bones.ravel().tolist())]
+        x, y, z = (round(float(item), DIGITS) for item in pelvis)
+        numbers = [x, y, z, *(round(item, DIGITS) for item in bones.ravel().tolist())]
         return BodyPose(x, y, round(heading, DIGITS), skeleton=tuple(numbers))
 
     def _joint_of(self, bone: str) -> int:
@@ -328,14 +330,16 @@ class Retargeting:
 
     def _rest_rotations(self) -> Floats:
         """Return the rotation of each bone from the rest shape of the body to the rest pose of the source."""
-        found = np.tile(np.eye(3), (len(self.body.names), 1, 1))
+        rest_rotations = np.tile(np.eye(3), (len(self.body.names), 1, 1))
         for k, side in enumerate("lr"):
             for upper, lower, end in (("upperarm", "lowerarm", "hand"), ("thigh", "calf", "foot")):
                 turn = self._aligned(np.eye(3), f"{upper}_{side}", f"{lower}_{side}")
-                found[self.body.bone(f"{upper}_{side}")] = turn
-                found[self.body.bone(f"{lower}_{side}")] = self._aligned(turn, f"{lower}_{side}", f"{end}_{side}")
-            self._turn_hand(found, k, side)
-        return found
+                rest_rotations[self.body.bone(f"{upper}_{side}")] = turn
+                rest_rotations[self.body.bone(f"{lower}_{side}")] = self._aligned(
+                    turn, f"{lower}_{side}", f"{end}_{side}"
+                )
+            self._turn_hand(rest_rotations, k, side)
+        return rest_rotations
 
     def _aligned(self, turn: Floats, bone: str, end: str) -> Floats:
         """Return a rotation, changed as little as possible so that a bone points along its segment."""
@@ -420,11 +424,13 @@ class FootLock:
         pelvis = pelvis - [0.0, 0.0, max(self._drop(side, whole, pelvis, targets[side]) for side in "lr")]
         for side, target in targets.items():
             self._reach(side, whole, pelvis, target)
-        found = self.retargeting.whole_pose(whole, pelvis, yaw_of(rotation[self.retargeting.source.roles["pelvis"]]))
-        self._poses[number] = found
+        body_pose = self.retargeting.whole_pose(
+            whole, pelvis, yaw_of(rotation[self.retargeting.source.roles["pelvis"]])
+        )
+        self._poses[number] = body_pose
         while len(self._poses) > KEPT:
             del self._poses[next(iter(self._poses))]
-        return found
+        return body_pose
 
     def _targets(self, time: float, position: Floats, whole: Floats, pelvis: Floats) -> dict[str, Floats]:
         """Return where the ankles are to be [m]."""

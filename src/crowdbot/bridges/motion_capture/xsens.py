@@ -213,7 +213,7 @@ def _read_name(payload: bytes) -> str:
     for line in payload.decode("utf-8", errors="replace").splitlines():
         tag, _, value = line.partition(":")
         if tag.strip() == "name":
-            return "".join(one for one in value.strip() if one.isprintable())[:MOST_NAME]
+            return "".join(item for item in value.strip() if item.isprintable())[:MOST_NAME]
     return ""
 
 

@@ -69,7 +69,7 @@ class RewriteCycle:
         if SHORTEST < moment - self._last < LONGEST:
             self._found.append(moment - self._last)
             usual = sorted(self._found)[len(self._found) // 10]
-            self.length = statistics.median_low(one for one in self._found if one < 1.6 * usual)  # none was missed
+            self.length = statistics.median_low(item for item in self._found if item < 1.6 * usual)  # none was missed
         self._last = moment
 
     def next_moment(self) -> float:
@@ -179,11 +179,11 @@ class RobotLink:
 
     def _tell_motion(self, motion: Any) -> None:
         """Tell the motion of the robot if its velocity has changed, or a moment has passed."""
-        velocity, now = [float(one) for one in motion.getRobotVelocity()], time.monotonic()
+        velocity, now = [float(item) for item in motion.getRobotVelocity()], time.monotonic()
         if velocity == self._velocity and now - self._told < REPEAT:
             return
         self._velocity, self._told = velocity, now
-        self._tell({"velocity": velocity, "pose": [float(one) for one in motion.getRobotPosition(True)]})
+        self._tell({"velocity": velocity, "pose": [float(item) for item in motion.getRobotPosition(True)]})
 
     def _count(self, memory: Any, values: dict[str, float]) -> None:
         found = memory.getListData(list(values))
@@ -202,7 +202,7 @@ def _session(url: str) -> Any:
 
 
 def _has_motion(session: Any) -> bool:
-    return any(one["name"] == "ALMotion" for one in session.services())
+    return any(service["name"] == "ALMotion" for service in session.services())
 
 
 def _equal(found: Any, wanted: Any) -> bool:

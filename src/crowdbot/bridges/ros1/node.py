@@ -85,13 +85,17 @@ class Ros1Node:
         if session is None:
             return
         frames = [
-            (one.topic, pack_frame(self._codec.of_cdr(one.cdr, one.kind))) for one in messages if self._takes(one)
+            (message.topic, pack_frame(self._codec.of_cdr(message.cdr, message.kind)))
+            for message in messages
+            if self._takes(message)
         ]
-        texts = {one.topic: one.message.data for one in messages if one.topic.endswith("/robot_description")}
+        texts = {
+            message.topic: message.message.data for message in messages if message.topic.endswith("/robot_description")
+        }
         self._call(lambda session: session.deliver(frames, texts))
 
-    def _takes(self, one: StepMessage) -> bool:
-        found = self._session and self._session.publications.get(one.topic)
+    def _takes(self, step_message: StepMessage) -> bool:
+        found = self._session and self._session.publications.get(step_message.topic)
         return bool(found) and (found.count > 0 or found.quality.latched)  # type: ignore[union-attr]
 
     def poll(self) -> None:

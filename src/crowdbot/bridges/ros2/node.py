@@ -53,7 +53,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, array.array | np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return value
 
 
@@ -77,7 +77,7 @@ def _typed(value: Any, kind: str, now: Any) -> Any:
     inner = re.fullmatch(r"sequence<(.*?)(?:, *\d+)?>", kind) or re.fullmatch(r"(.*)\[\d+\]", kind)
     if inner is None:
         return TYPES.get(kind, int)(value)
-    return [_typed(one, inner[1], _new(inner[1])) for one in value]
+    return [_typed(item, inner[1], _new(inner[1])) for item in value]
 
 
 def _new(kind: str) -> Any:
@@ -131,10 +131,10 @@ def add_services(node: Any, inbox: Inbox, sender: str) -> tuple[str, ...]:
 
 def _plain_callback(service: PlainService, node: Any, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]:
     def call(request: Any, response: Any) -> Any:
-        found: queue.SimpleQueue[str] = queue.SimpleQueue()
+        simple_queue: queue.SimpleQueue[str] = queue.SimpleQueue()
         try:
-            service.call(inbox, found.put, sender)
-            problem = found.get(timeout=ANSWER_TIME)
+            service.call(inbox, simple_queue.put, sender)
+            problem = simple_queue.get(timeout=ANSWER_TIME)
         except (InputError, queue.Empty) as error:
             problem = str(error) or UNANSWERED
         if service.kind == "Trigger":
@@ -148,10 +148,10 @@ def _plain_callback(service: PlainService, node: Any, inbox: Inbox, sender: str)
 
 def _callback(name: str, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]:
     def call(request: Any, response: Any) -> Any:
-        found: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        simple_queue: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         try:
-            inbox.call(name, message_fields(request), found.put, sender)
-            fields = found.get(timeout=ANSWER_TIME)
+            inbox.call(name, message_fields(request), simple_queue.put, sender)
+            fields = simple_queue.get(timeout=ANSWER_TIME)
         except (InputError, queue.Empty) as error:
             fields = result(FAILED, str(error) or UNANSWERED)
         return fill_message(response, fields)
@@ -276,7 +276,7 @@ class Ros2Node:
         """
         if RANGE not in os.environ:
             os.environ[RANGE] = "SUBNET" if self.everywhere else "LOCALHOST"
-        count = max(len(one.kinds) for one in interface.inputs)
+        count = max(len(input_topic.kinds) for input_topic in interface.inputs)
         for k in range(len(self._participants), count):
             self._participants.append(Participant(self._ros, f"{NODE}_{k + 1}" if k else NODE, self.domain))
         missing: dict[str, None] = {}
@@ -289,49 +289,59 @@ class Ros2Node:
         self.missing = tuple(missing)
         if missing:
             self.report("warning", f"not installed, so topics are left out: {', '.join(missing)}")
-        for one in self._participants:
-            one.start()
+        for participant in self._participants:
+            participant.start()
 
     def _announce(self, interface: RobotInterface, missing: dict[str, None]) -> None:
-        wanted = {one.name: one for one in interface.outputs}
+        wanted = {output.name: output for output in interface.outputs}
         for topic, (kind, publisher) in list(self._publishers.items()):
             if topic not in wanted or wanted[topic].kind != kind:
                 self._participants[0].node.destroy_publisher(publisher)
                 del self._publishers[topic]
-        for one in wanted.values():
-            if one.name not in self._publishers:
-                self._add_publisher(one, missing)
+        for item in wanted.values():
+            if item.name not in self._publishers:
+                self._add_publisher(item, missing)
 
-    def _add_publisher(self, one: OutputTopic, missing: dict[str, None]) -> None:
-        found = message_class(one.kind)
+    def _add_publisher(self, output_topic: OutputTopic, missing: dict[str, None]) -> None:
+        found = message_class(output_topic.kind)
         if found is None:
-            missing[one.kind] = None
+            missing[output_topic.kind] = None
             return
-        publisher = self._participants[0].node.create_publisher(found, one.name, quality_profile(one.quality))
-        self._publishers[one.name] = (one.kind, publisher)
+        publisher = self._participants[0].node.create_publisher(
+            found, output_topic.name, quality_profile(output_topic.quality)
+        )
+        self._publishers[output_topic.name] = (output_topic.kind, publisher)
 
     def _listen(self, interface: RobotInterface, inbox: Inbox, missing: dict[str, None]) -> None:
         """Subscribe every type of each input; a command can come plain or stamped.
 
         DDS allows one type for each topic in a participant, so the second type of a topic has its own.
         """
-        wanted = {(one.name, kind): (one, k) for one in interface.inputs for k, kind in enumerate(one.kinds)}
+        wanted = {
+            (input_topic.name, kind): (input_topic, k)
+            for input_topic in interface.inputs
+            for k, kind in enumerate(input_topic.kinds)
+        }
         for key, (node, subscription) in list(self._subscriptions.items()):
             if key not in wanted:
                 node.destroy_subscription(subscription)
                 del self._subscriptions[key]
-        for (name, kind), (one, k) in wanted.items():
+        for (name, kind), (item, k) in wanted.items():
             if (name, kind) not in self._subscriptions:
-                self._add_subscription(one, kind, self._participants[k].node, inbox, missing)
+                self._add_subscription(item, kind, self._participants[k].node, inbox, missing)
 
-    def _add_subscription(self, one: InputTopic, kind: str, node: Any, inbox: Inbox, missing: dict[str, None]) -> None:
+    def _add_subscription(
+        self, input_topic: InputTopic, kind: str, node: Any, inbox: Inbox, missing: dict[str, None]
+    ) -> None:
         found = message_class(kind)
         if found is None:
             missing[kind] = None
             return
-        take = functools.partial(self._take, one.name, kind, inbox)
-        subscription = node.create_subscription(found, one.name, take, quality_profile(one.quality), raw=True)
-        self._subscriptions[one.name, kind] = (node, subscription)
+        take = functools.partial(self._take, input_topic.name, kind, inbox)
+        subscription = node.create_subscription(
+            found, input_topic.name, take, quality_profile(input_topic.quality), raw=True
+        )
+        self._subscriptions[input_topic.name, kind] = (node, subscription)
 
     def _take(self, topic: str, kind: str, inbox: Inbox, data: bytes) -> None:
         """Give a message to the inbox; runs in the thread of the node."""
@@ -345,9 +355,9 @@ class Ros2Node:
 
     def publish(self, messages: Sequence[StepMessage]) -> None:
         """Publish the bytes of the messages of a step, as they are recorded."""
-        for one in messages:
-            if one.topic in self._publishers:
-                self._publishers[one.topic][1].publish(one.cdr)
+        for message in messages:
+            if message.topic in self._publishers:
+                self._publishers[message.topic][1].publish(message.cdr)
 
     def poll(self) -> None:
         """Do nothing: the thread of the node gives what arrives to the inbox."""
@@ -366,13 +376,13 @@ class Ros2Node:
         """Return whether a node subscribes a topic, or with a final slash one that starts with it."""
         if not topic.endswith("/"):
             return topic in self._publishers and self._publishers[topic][1].get_subscription_count() > 0
-        names = [one for one in self._publishers if one == topic[:-1] or one.startswith(topic)]
-        return any(self._publishers[one][1].get_subscription_count() > 0 for one in names)
+        names = [publisher for publisher in self._publishers if publisher == topic[:-1] or publisher.startswith(topic)]
+        return any(self._publishers[name][1].get_subscription_count() > 0 for name in names)
 
     def stop(self) -> None:
         """Stop the node."""
-        for one in (*self._participants, *([self._services] if self._services else [])):
-            one.stop()
+        for participant in (*self._participants, *([self._services] if self._services else [])):
+            participant.stop()
         self._participants, self._services = [], None
 
 

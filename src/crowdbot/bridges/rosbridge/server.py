@@ -91,7 +91,7 @@ class RosbridgeServer:
 
     def publish(self, messages: Sequence[StepMessage]) -> None:
         """Hand the messages of a step to the thread of the server; if it is slow, the oldest steps are dropped."""
-        self._steps.append([OutgoingMessage.of(one) for one in messages])
+        self._steps.append([OutgoingMessage.of(message) for message in messages])
         self._server.call(self._deliver)
 
     def poll(self) -> None:
@@ -111,7 +111,7 @@ class RosbridgeServer:
         wanted = self._graph.wanted if self._graph is not None else frozenset()
         if not topic.endswith("/"):
             return topic in wanted
-        return any(one == topic[:-1] or one.startswith(topic) for one in wanted)
+        return any(item == topic[:-1] or item.startswith(topic) for item in wanted)
 
     def stop(self) -> None:
         """Disconnect all clients and stop listening."""

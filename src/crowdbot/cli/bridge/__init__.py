@@ -95,7 +95,7 @@ def open_bridges(options: argparse.Namespace) -> list[Transport]:
     values: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
     for name, text in (("topics", options.bridge_topics), ("origins", options.bridge_origins)):
         if text is not None:
-            values[name] = [one.strip() for one in text.split(",") if one.strip()]
+            values[name] = [item.strip() for item in text.split(",") if item.strip()]
     return [open_transport(text, values) for text in options.bridge]
 
 

@@ -39,13 +39,13 @@ def open_captures(trial: Trial, options: argparse.Namespace, stack: contextlib.E
     from crowdbot.bridges import parse_captures
 
     captures = parse_captures(options.mocap, trial)
-    if any(one.stream.live for one in captures):
+    if any(capture.stream.live for capture in captures):
         if options.pace not in (None, 1.0):
             raise InputError(f"--pace {options.pace:g} does not fit live motion capture, which needs real time")
         if options.clock not in (None, "paced"):
             raise InputError(f"--clock {options.clock} does not fit live motion capture, which needs real time")
         options.pace = 1.0
-    return [stack.enter_context(one) for one in captures]
+    return [stack.enter_context(capture) for capture in captures]
 
 
 def open_capture_set(options: argparse.Namespace, stack: contextlib.ExitStack) -> CaptureSet:
@@ -59,15 +59,15 @@ def open_capture_set(options: argparse.Namespace, stack: contextlib.ExitStack) -
 
     if options.mocap and options.rehearse:
         raise InputError("--mocap moves the avatars; leave out --rehearse, which moves them too")
-    found = stack.enter_context(CaptureSet(options.mocap))
-    if found.live:
+    capture_set = stack.enter_context(CaptureSet(options.mocap))
+    if capture_set.live:
         if options.rate not in (None, 1.0):
             raise InputError(f"--rate {options.rate:g} does not fit live motion capture, which needs real time")
         options.rate = 1.0
-    return found
+    return capture_set
 
 
 def print_captures(captures: Sequence[MotionCapture]) -> None:
     """Print what motion captures have received."""
-    for remark in (remark for one in captures for remark in one.remarks()):
+    for remark in (remark for capture in captures for remark in capture.remarks()):
         note(f"motion capture {remark}")

@@ -38,8 +38,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     made["pack"].add_argument("--entry", type=Path, metavar="FILE", help="entry.json to pack with the files")
     made["pack"].add_argument("--out", type=Path, required=True, metavar="FILE", help="packed submission (.zip)")
     made["board"].add_argument("--out", type=Path, required=True, metavar="FILE", help="page (.html)")
-    for one in made.values():
-        add_json(one)
+    for item in made.values():
+        add_json(item)
 
 
 VERBS = {

@@ -89,7 +89,7 @@ def main(options: argparse.Namespace) -> int:
         raise InputError("evaluate needs a trial, or recordings with --logs, --real or --participants")
     names = statistic_names(options, STATISTICS)
     with remarks_at_end():
-        plan = plan_of(options, [*names, *(one.statistic.name for one in requirements)])
+        plan = plan_of(options, [*names, *(requirement.statistic.name for requirement in requirements)])
     print_robots((cell.variant for cell in plan.cells), options.json)
     parts, begin = None if options.out is None else options.out / "parts", time.perf_counter()
     try:
@@ -111,7 +111,7 @@ def main(options: argparse.Namespace) -> int:
 def _occasional_names(result: EvaluationResult) -> list[str]:
     """Return the columns of what only some results have: failed runs, measured decisions, deadlines."""
     decisions = ("decision-time", "missed-deadlines")
-    measured = [one for one in decisions if any(cell.estimate(one).runs for cell in result.cells)]
+    measured = [decision for decision in decisions if any(cell.estimate(decision).runs for cell in result.cells)]
     return ["error-rate"] * bool(result.failures) + measured
 
 
@@ -128,7 +128,7 @@ def _present(
     if options.metrics is None:
         names = [*names, *_occasional_names(result)]
     statistics = [parse_statistic(name, result.metrics) for name in names]
-    requirements = [parse_requirement(one.text, result.metrics) for one in requirements]
+    requirements = [parse_requirement(requirement.text, result.metrics) for requirement in requirements]
     verdicts = [
         (cell, requirement, requirement.judge(cell.values(requirement.statistic.metric)))
         for requirement in requirements

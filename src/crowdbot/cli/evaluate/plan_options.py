@@ -69,7 +69,7 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         if not factors:
             trials.append(load_settings_trial(name, values, options.trust))
             continue
-        again = [one.name for one in factors if one.name in values]
+        again = [factor.name for factor in factors if factor.name in values]
         if again:
             raise InputError(f"--sweep {again[0]} and --set {again[0]} conflict; give one of them")
         base = load_settings_trial(name, values, options.trust).name
@@ -79,10 +79,10 @@ def plan_of(options: argparse.Namespace, names: list[str]) -> EvaluationPlan:
         ):
             trials.append(trial)
             levels[trial.name] = (base, row)
-    statistics = [parse_statistic(one) for one in names]
+    statistics = [parse_statistic(name) for name in names]
     check_metrics(statistics)
-    own = dict.fromkeys(one.address for one in statistics if one.address)
-    families = (*LOG_FAMILIES, *own, *families_of([one.metric for one in statistics]))
+    own = dict.fromkeys(statistic.address for statistic in statistics if statistic.address)
+    families = (*LOG_FAMILIES, *own, *families_of([statistic.metric for statistic in statistics]))
     methods = parse_methods(options.navigators)
     return EvaluationPlan(
         trials,

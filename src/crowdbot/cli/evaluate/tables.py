@@ -62,7 +62,7 @@ def print_result(result: EvaluationResult, statistics: Sequence[Statistic], wall
                 *([cell.robot or "own"] if robots else []),
                 "yes" if cell.protocol.get("visible") else "no",
                 str(len(cell.valid)),
-                *(str(cell.estimate(one)) for one in statistics),
+                *(str(cell.estimate(statistic)) for statistic in statistics),
             ]
             for cell in result.cells
             if cell.trial == trial
@@ -90,15 +90,15 @@ def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComp
     robots = len({cell.robot for cell in result.cells}) > 1
     rows = [
         [
-            one.trial,
-            one.second,
-            *([one.robot or "own"] if robots else []),
-            _metric_title(one.metric),
-            str(one.difference),
-            _p_value(one.corrected),
+            comparison.trial,
+            comparison.second,
+            *([comparison.robot or "own"] if robots else []),
+            _metric_title(comparison.metric),
+            str(comparison.difference),
+            _p_value(comparison.corrected),
         ]
-        for one in comparisons
-        if one.first == first and not math.isnan(one.p_value)
+        for comparison in comparisons
+        if comparison.first == first and not math.isnan(comparison.p_value)
     ]
     if rows:
         caption = f"paired by seed; p-values corrected for all {len(comparisons)} comparisons (Holm)"
@@ -113,11 +113,18 @@ def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> 
     if not any(cell.factors for cell in result.cells):
         return
     caption = "mean of the level minus mean of all levels; pairs: what is left after both; only pairs clear of 0"
-    for metric in dict.fromkeys(one.metric for one in statistics):
+    for metric in dict.fromkeys(statistic.metric for statistic in statistics):
         rows = [
-            [one.trial, one.method, " and ".join(one.factors), ", ".join(one.levels), str(one.mean), str(one.effect)]
-            for one in factor_effects(result, metric)
-            if len(one.factors) == 1 or one.effect.low > 0.0 or one.effect.high < 0.0
+            [
+                effect.trial,
+                effect.method,
+                " and ".join(effect.factors),
+                ", ".join(effect.levels),
+                str(effect.mean),
+                str(effect.effect),
+            ]
+            for effect in factor_effects(result, metric)
+            if len(effect.factors) == 1 or effect.effect.low > 0.0 or effect.effect.high < 0.0
         ]
         head = ("trial", "navigator", "factor", "level", "mean", "effect")
         print_table(f"effects on {_metric_title(metric)}", head, rows, caption, words=4)
@@ -164,19 +171,21 @@ def result_values(
             {
                 **_names(cell),
                 "verdict": _verdict_values(judge_cell(cell, requirements)),
-                "contacts": [one._asdict() for one in person_contacts(cell)],
+                "contacts": [contact._asdict() for contact in person_contacts(cell)],
                 "remarks": list(cell.remarks),
-                "realism": [dataclasses.asdict(one) for one in cell.realism],
+                "realism": [dataclasses.asdict(item) for item in cell.realism],
                 "runs": len(cell.valid),
                 "hash": cell.hash,
                 "protocol": dict(cell.protocol),
-                "statistics": {one.name: cell.estimate(one)._asdict() for one in statistics},
-                "titles": {one.name: one.title for one in statistics},
+                "statistics": {statistic.name: cell.estimate(statistic)._asdict() for statistic in statistics},
+                "titles": {statistic.name: statistic.title for statistic in statistics},
             }
             for cell in result.cells
         ],
         **({"effects": effect_values(result, statistics)} if any(cell.factors for cell in result.cells) else {}),
-        "comparisons": [one._asdict() | {"difference": one.difference._asdict()} for one in comparisons],
+        "comparisons": [
+            comparison._asdict() | {"difference": comparison.difference._asdict()} for comparison in comparisons
+        ],
         "requirements": [
             {
                 **_names(cell),
@@ -202,9 +211,9 @@ def effect_values(result: EvaluationResult, statistics: Sequence[Statistic]) -> 
     from crowdbot.evaluation import factor_effects
 
     return [
-        one._asdict() | {"mean": one.mean._asdict(), "effect": one.effect._asdict()}
-        for metric in dict.fromkeys(one.metric for one in statistics)
-        for one in factor_effects(result, metric)
+        effect._asdict() | {"mean": effect.mean._asdict(), "effect": effect.effect._asdict()}
+        for metric in dict.fromkeys(statistic.metric for statistic in statistics)
+        for effect in factor_effects(result, metric)
     ]
 
 

@@ -65,15 +65,15 @@ def analyse(options: argparse.Namespace) -> int:
         return 0 if len(lost) < len(found.trials) else 1
     rows = [
         (
-            found.measures[one.measure].title,
-            f"{one.second}\n- {one.first}",
-            number(one.test.difference, 3),
-            f"{number(one.test.low, 3)} to {number(one.test.high, 3)}",
-            number(one.corrected, 3),
-            number(one.test.effect, 2),
-            "yes" if one.test.equivalent else "not shown",
+            found.measures[test.measure].title,
+            f"{test.second}\n- {test.first}",
+            number(test.test.difference, 3),
+            f"{number(test.test.low, 3)} to {number(test.test.high, 3)}",
+            number(test.corrected, 3),
+            number(test.test.effect, 2),
+            "yes" if test.test.equivalent else "not shown",
         )
-        for one in found.tests
+        for test in found.tests
     ]
     people = len({trial.participant for trial in found.trials})
     head = ("measure", "conditions", "difference", "95 % interval", "p", "d_z", "equivalent")

@@ -79,7 +79,7 @@ def main(options: argparse.Namespace) -> int:
         joined = joined_trial(trial, options.robot)
         captures = open_captures(joined, options, stack)
         chosen = options.robot or joined.robots[0].name
-        moved = any(binding.target == chosen for one in captures for binding in one.bindings)
+        moved = any(binding.target == chosen for capture in captures for binding in capture.bindings)
         run = JoinRun(
             trial,
             open_bridges(options),

@@ -158,13 +158,13 @@ def _robot_name(path: Path) -> str:
 def _pairs(words: list[str], sign: str, option: str) -> dict[str, str]:
     from crowdbot.core import InputError
 
-    found = {}
+    pairs = {}
     for word in words:
         name, has, value = word.partition(sign)
         if not (name and has):
             raise InputError(f"{option} {word[:80]!r} must be NAME{sign}VALUE")
-        found[name.strip()] = value.strip()
-    return found
+        pairs[name.strip()] = value.strip()
+    return pairs
 
 
 def _write_folder(out: Path, made: RobotFolder) -> None:

@@ -36,11 +36,18 @@ def score_annotated(options: argparse.Namespace) -> int:
     name, first = Path(options.source).name, next(iter(scores.values()))
     if options.json:
         print_json({"source": name, "people": first.people,
-            "scores": {key: one._asdict() for key, one in scores.items()}})  # fmt: skip
+            "scores": {key: score._asdict() for key, score in scores.items()}})  # fmt: skip
         return 0
     table = [
-        [key, f"{one.precision:.3f}", f"{one.recall:.3f}", f"{one.f1:.3f}", f"{one.error:.3f}", str(one.detections)]
-        for key, one in scores.items()
+        [
+            key,
+            f"{score.precision:.3f}",
+            f"{score.recall:.3f}",
+            f"{score.f1:.3f}",
+            f"{score.error:.3f}",
+            str(score.detections),
+        ]
+        for key, score in scores.items()
     ]
     caption = f"{first.people} annotated people without identities; no map, no odometry; reach {options.reach:g} m"
     head = ("detector, tracker", "precision", "recall", "F1", "error [m]", "positions")

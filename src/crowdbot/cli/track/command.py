@@ -31,7 +31,7 @@ def score_downstream(options: argparse.Namespace, runs: dict[str, list[TrackingR
 
     predictors = {name: build_predictor(name, None, {}) for name in options.predictor or []}
     return {
-        label: {name: estimate_downstream(some, one, options.reach) for name, one in predictors.items()}
+        label: {name: estimate_downstream(some, predictor, options.reach) for name, predictor in predictors.items()}
         for label, some in runs.items()
     }
 
@@ -65,12 +65,12 @@ def print_statistics(options: argparse.Namespace) -> int:
         title = f"{logs[0].name}, {logs[0].sensor}, {len(logs)} runs"
         bands, missing = scan_statistics(row for log in logs for row in _logged(log))
     if options.json:
-        print_json({"source": title, "missing": missing, "bands": [one._asdict() for one in bands]})
+        print_json({"source": title, "missing": missing, "bands": [band._asdict() for band in bands]})
         return 0
     rows = [
-        [f"{one.near:g} to {one.far:g} m", str(one.people), f"{one.returns:.1f}", f"{one.low:.0f} to {one.high:.0f}",
-         f"{one.unseen:.3f}", _shown(one.apart), _shown(one.width)]
-        for one in bands if one.people
+        [f"{band.near:g} to {band.far:g} m", str(band.people), f"{band.returns:.1f}", f"{band.low:.0f} to {band.high:.0f}",
+         f"{band.unseen:.3f}", _shown(band.apart), _shown(band.width)]
+        for band in bands if band.people
     ]  # fmt: skip
     head = ("distance", "people", "returns a person", "10 to 90 %", "without return", "in two pieces", "width [m]")
     caption = "people who are not hidden; returns at most 0.45 m from the centre;"
@@ -173,7 +173,10 @@ def _track_source(options: argparse.Namespace) -> int:
 def _prediction(downstream: dict[str, Any]) -> dict[str, Any]:
     """Return the scores of predictors for the output of ``--json``."""
     return {
-        label: {name: {given: _as_json(one) for given, one in inputs.items()} for name, inputs in predictors.items()}
+        label: {
+            name: {given: _as_json(input_topic) for given, input_topic in inputs.items()}
+            for name, inputs in predictors.items()
+        }
         for label, predictors in downstream.items()
     }
 
@@ -212,15 +215,15 @@ def _tables(options: argparse.Namespace, runs: dict[str, list[TrackingRun]]) -> 
 
 
 def _as_json(scores: dict[str, Any]) -> dict[str, Any]:
-    found = {}
-    for name, one in scores.items():
-        is_record = dataclasses.is_dataclass(one) and not isinstance(one, type)
-        found[name] = dataclasses.asdict(one) if is_record else one._asdict()
-    return found
+    json = {}
+    for name, score in scores.items():
+        is_record = dataclasses.is_dataclass(score) and not isinstance(score, type)
+        json[name] = dataclasses.asdict(score) if is_record else score._asdict()
+    return json
 
 
 def _summary(options: argparse.Namespace, logs: list[ReadingLog], tables: dict[str, Table]) -> dict[str, Any]:
-    parts = {part: {name: _as_json(one) for name, one in table.items()} for part, table in tables.items()}
+    parts = {part: {name: _as_json(item) for name, item in table.items()} for part, table in tables.items()}
     return {
         "source": logs[0].name,
         "seeds": [log.seed for log in logs],
@@ -246,11 +249,11 @@ def _print(options: argparse.Namespace, logs: list[ReadingLog], part: str, table
     if len(table) > MOST_COLUMNS:
         units = {name: f" [{unit}]" if unit else "" for name, unit in TRACKING_SCORES.items()}
         head = ["tracker", *(words[name] + units[name] for name in MAIN_SCORES)]
-        rows = [[name, *(str(scores[one]) for one in MAIN_SCORES)] for name, scores in table.items()]
+        rows = [[name, *(str(scores[item]) for item in MAIN_SCORES)] for name, scores in table.items()]
     else:
         head = ["score", *table, "unit"]
-        rows = [[words[one], *(str(scores[one]) for scores in table.values()), unit]
-                for one, unit in TRACKING_SCORES.items()]  # fmt: skip
+        rows = [[words[item], *(str(scores[item]) for scores in table.values()), unit]
+                for item, unit in TRACKING_SCORES.items()]  # fmt: skip
     print_table(title, head, rows, f"{caption}; reach {options.reach:g} m")
 
 

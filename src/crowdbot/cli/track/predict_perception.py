@@ -56,7 +56,7 @@ def predict_perception(options: argparse.Namespace) -> int:
     protocol = _protocol(options, recorded)
     with progress(options.json) as report:
         logs = _logs(options, recorded, protocol, report)
-    scores = {name: score_scans(logs, one, protocol, samples=options.samples) for name, one in chosen.items()}
+    scores = {name: score_scans(logs, item, protocol, samples=options.samples) for name, item in chosen.items()}
     unit = "runs" if not recorded else "piece" if len(logs) == 1 else "pieces"
     title = f"{logs[0].name}, {logs[0].sensor}, {len(logs)} {unit}"
     if options.plot is not None:
@@ -111,7 +111,7 @@ def _summary(
         "samples": options.samples,
         "horizons": list(next(iter(scores.values())).horizons),
         "scores": {
-            label: {name: [one._asdict() for one in row] for name, row in found.estimates().items()}
+            label: {name: [item._asdict() for item in row] for name, row in found.estimates().items()}
             for label, found in scores.items()
         },
     }
@@ -134,7 +134,7 @@ def _print(options: argparse.Namespace, title: str, caption: str, scores: dict[s
     horizons = next(iter(scores.values())).horizons
     tables = {label: found.estimates() for label, found in scores.items()}
     rows = [
-        [name.replace("_", " ") + (f" [{unit}]" if unit else ""), label, *(str(one) for one in tables[label][name])]
+        [name.replace("_", " ") + (f" [{unit}]" if unit else ""), label, *(str(item) for item in tables[label][name])]
         for name, unit in SCAN_SCORES.items()
         for label in scores
     ]

@@ -52,17 +52,17 @@ def chosen_trackers(options: argparse.Namespace) -> dict[str, Tracker]:
     from crowdbot import perception
     from crowdbot.core import InputError, find_class
 
-    found: dict[str, Tracker] = {}
+    result: dict[str, Tracker] = {}
     for name in options.tracker:
         tracker = find_class(name, perception, perception.Tracker)()
         for motion in options.motion:
             if motion == STEADY:
-                found[name] = tracker
+                result[name] = tracker
             elif "motion" in {field.name for field in dataclasses.fields(tracker)}:
-                found[f"{name} + {motion}"] = dataclasses.replace(tracker, motion=_motion(motion))
+                result[f"{name} + {motion}"] = dataclasses.replace(tracker, motion=_motion(motion))
             else:
                 raise InputError(f"--motion {motion}: the tracker {name} has no other motion than {STEADY}")
-    return found
+    return result
 
 
 def _motion(name: str) -> PredictorMotion:

@@ -79,8 +79,8 @@ def track_from_video(options: argparse.Namespace) -> int:
     summary = {
         "video": options.video.name,
         "frames": len(run.time),
-        "detections": sum(len(one) for one in run.detections),
-        "tracks": len({who for one in run.tracks for who in one.ids.tolist()}),
+        "detections": sum(len(detection) for detection in run.detections),
+        "tracks": len({who for track in run.tracks for who in track.ids.tolist()}),
         "scores": scores,
     }
     if options.json:
@@ -112,11 +112,11 @@ def _write(run: VideoRun, folder: Path) -> None:
     with (folder / "tracks.csv").open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(["id", "time", "x", "y", "vx", "vy", "sd_x", "sd_y"])
-        for one in run.tracks:
-            for k, who in enumerate(one.ids.tolist()):
-                spread = [float(one.covariance[k, i, i]) ** 0.5 for i in (0, 1)]
-                values = [*one.position[k], *one.velocity[k], *spread]
-                table.writerow([who, f"{one.time:.3f}", *(f"{value:.3f}" for value in values)])
+        for track in run.tracks:
+            for k, who in enumerate(track.ids.tolist()):
+                spread = [float(track.covariance[k, i, i]) ** 0.5 for i in (0, 1)]
+                values = [*track.position[k], *track.velocity[k], *spread]
+                table.writerow([who, f"{track.time:.3f}", *(f"{value:.3f}" for value in values)])
     with (folder / "forecasts.csv").open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(["time", "id", "ahead", "x", "y"])

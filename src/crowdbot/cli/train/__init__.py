@@ -182,7 +182,7 @@ def _read(options: argparse.Namespace) -> _TrainingData:
     if options.leave_out is not None:
         found, test = leave_out(found, options.leave_out)
     found, short = recordings_with_windows(found)
-    paths = [one.path for one in test]
+    paths = [item.path for item in test]
     sets = _data_sets(options, found)
     if options.check is None:
         return _TrainingData(tuple(found), split_in_time(found, options.hold, sets), paths, short)
@@ -213,8 +213,8 @@ def _remarks(options: argparse.Namespace, data: _TrainingData) -> list[str]:
     """Return a line on the recordings that are left out, and on those that are not cut in time."""
     lines = []
     if data.short:
-        names = [one.name for one in data.short]
-        words = [one.path if names.count(one.name) > 1 else one.name for one in data.short]
+        names = [item.name for item in data.short]
+        words = [item.path if names.count(item.name) > 1 else item.name for item in data.short]
         rows = f"{options.observe} + {options.predict} rows of {data.split.training.dt:.4g} s"
         lines.append(f"left out, without a window of {rows}: {', '.join(words)}")
     uses = (data.split.whole_training, "training"), (data.split.whole_validation, "validation")
@@ -277,7 +277,7 @@ def _print_result(
         print_json(
             {"checkpoint": str(file), "updates": done.updates, "stopped_early": done.stopped,
              "seconds": done.seconds, "start": before, "best": dict(best), "log": [dict(row) for row in done.rows],
-             "left_out": data.test, "without_windows": [one.path for one in data.short],
+             "left_out": data.test, "without_windows": [item.path for item in data.short],
              "used_whole": {"training": list(data.split.whole_training),
                             "validation": list(data.split.whole_validation)}}
         )  # fmt: skip

@@ -52,7 +52,10 @@ def train_scan_predictor(options: argparse.Namespace) -> int:
     if options.json:
         print_json({**fit._asdict(), "file": str(fit.file)})
         return 0
-    rows = [("straight", *(f"{one:.3f}" for one in fit.straight)), ("learned", *(f"{one:.3f}" for one in fit.learned))]
+    rows = [
+        ("straight", *(f"{item:.3f}" for item in fit.straight)),
+        ("learned", *(f"{item:.3f}" for item in fit.learned)),
+    ]
     title = f"{fit.samples} people in scans of {len(TRIALS) * options.runs} runs; held-out runs"
     print_table(title, ("path", "0.5 s", "1 s", "2 s", "3 s"), rows, "mean distance from the true place [m]")
     print(fit.file)
@@ -65,10 +68,10 @@ def _runs(options: argparse.Namespace, report: Progress) -> list[list[tuple[Scan
     from crowdbot.perception import ScanNetwork
     from crowdbot.trials import load_trial
 
-    found = []
+    runs = []
     for k in range(options.runs):
         for n, (name, given) in enumerate(TRIALS):
             log = log_readings(load_trial(name, {"duration": DURATION, **given}), options.seed + k, ScanNetwork())
-            found.append([(cast("Scan", row.reading), {**row.people, **row.others}) for row in log.rows])
+            runs.append([(cast("Scan", row.reading), {**row.people, **row.others}) for row in log.rows])
             report("run trials", (k * len(TRIALS) + n + 1) / (options.runs * len(TRIALS)))
-    return found
+    return runs

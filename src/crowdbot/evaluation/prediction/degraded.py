@@ -110,23 +110,26 @@ def sweep_degradations(
         InputError: a level is not allowed, or does not apply to a recording.
     """
     task = task or DegradedTask()
-    steps = [(one, [(v, one.at(v)) for v in (one.levels if levels is None else levels)]) for one in degradations]
+    steps = [
+        (degradation, [(v, degradation.at(v)) for v in (degradation.levels if levels is None else levels)])
+        for degradation in degradations
+    ]
     for tracks in recordings:
         for _, ladder in steps:
-            for _, one in ladder:
-                if not one.neutral:
-                    one.check(tracks)
+            for _, item in ladder:
+                if not item.neutral:
+                    item.check(tracks)
     whole = [tracks.windows(task.observe, task.predict, task.protocol, task.near) for tracks in recordings]
     cuts = [(past[:: task.every], future[:: task.every]) for past, future in whole]
     clean: list[DegradedScore] = []
     for degradation, ladder in steps:
-        for done, (level, one) in enumerate(ladder):
+        for done, (level, item) in enumerate(ladder):
             if progress is not None:
                 progress(degradation.name, done / len(ladder))
-            found = clean if one.neutral else []
-            found = found or _level(one, level, recordings, cuts, predictors, task)
-            if one.neutral:
-                clean = found = [dataclasses.replace(score, degradation=one, level=level) for score in found]
+            found = clean if item.neutral else []
+            found = found or _level(item, level, recordings, cuts, predictors, task)
+            if item.neutral:
+                clean = found = [dataclasses.replace(score, degradation=item, level=level) for score in found]
             yield found
         if progress is not None:
             progress(degradation.name, 1.0)

@@ -90,7 +90,7 @@ def run_demo(
     commands = _commands(out, episode, fit)
     page = write_demo_report(page, episode, past, future, predicted, commands, _describe_input(trial, fit))
     report("4 write the report", 1.0)
-    scores = tuple(one.score for one in predicted)
+    scores = tuple(item.score for item in predicted)
     caption = f"protocol {scores[0].protocol}; people within {NEAR:g} m of the robot; means over persons"
     return Demo(episode, scores, file, page, caption)
 
@@ -112,14 +112,14 @@ def _predict(
 
     from .predictor_score import score_predictor
 
-    found = []
+    prediction_results = []
     predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))
     for number, predictor in enumerate(predictors, start=1):
         score = score_predictor(predictor, past, future, seed=seed)
         score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # parameters are listed below
-        found.append(PredictionResult(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
+        prediction_results.append(PredictionResult(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
         progress(number / 4)
-    return found
+    return prediction_results
 
 
 def _commands(out: Path, episode: Episode, fit: Fit) -> dict[str, str]:

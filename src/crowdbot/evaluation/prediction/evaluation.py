@@ -126,7 +126,7 @@ class PredictorEvaluation:
     def labels(self) -> dict[str, str]:
         """Return predictor name -> short label; the full name where labels would be ambiguous."""
         short = [spec.label for spec in self.specs]
-        return {one.name: one.label if short.count(one.label) == 1 else one.name for one in self.specs}
+        return {spec.name: spec.label if short.count(spec.label) == 1 else spec.name for spec in self.specs}
 
     def window_at(self, frame: int) -> tuple[Recording, int]:
         """Return the first recording with a window that ends at this frame, and the index of the window.
@@ -145,7 +145,7 @@ class PredictorEvaluation:
 
     def jobs(self) -> list[PredictorJob]:
         """Return the jobs, ordered by recording, then predictor."""
-        found = []
+        predictor_jobs = []
         for recording in self.recordings:
             past, _ = recording.windows
             people = int(past.present[:, -1].sum())
@@ -155,10 +155,10 @@ class PredictorEvaluation:
             for spec in self.specs:
                 for first in range(0, len(past), size):
                     last = min(first + size, len(past))
-                    found.append(
+                    predictor_jobs.append(
                         PredictorJob(recording, spec, first, last, self.samples, self.best_of, self.seed, self.live)
                     )
-        return found
+        return predictor_jobs
 
     def run(
         self, workers: int = 1, cluster: str | None = None, keep: Path | None = None
@@ -201,8 +201,8 @@ class PredictorEvaluation:
         import pandas as pd
 
         tables = [
-            pd.DataFrame({"recording": one.recording.path, "predictor": one.spec.name, **vars(one.frames)})
-            for one in results
+            pd.DataFrame({"recording": result.recording.path, "predictor": result.spec.name, **vars(result.frames)})
+            for result in results
         ]
         return pd.concat(tables, ignore_index=True)
 

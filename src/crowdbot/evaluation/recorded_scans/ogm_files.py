@@ -75,9 +75,9 @@ SCANS, POSITIONS = "scans", "positions"
 def find_ogm_split(folder: Path | str) -> Path | None:
     """Return the folder with ``scans`` and ``positions``: the given one or its ``test``; None if there is none."""
     root = Path(folder)
-    for one in (root, root / "test"):
-        if (one / SCANS).is_dir() and (one / POSITIONS).is_dir():
-            return one
+    for item in (root, root / "test"):
+        if (item / SCANS).is_dir() and (item / POSITIONS).is_dir():
+            return item
     return None
 
 
@@ -124,7 +124,7 @@ def read_ogm(folder: Path | str, duration: float = math.inf, min_duration: float
 def _files(folder: Path, split: Path) -> list[Path]:
     """Return the files of the list in a folder of a split."""
     lists = sorted(folder.glob("*.txt"))
-    named = [one for one in lists if one.stem == split.name]
+    named = [list_ for list_ in lists if list_.stem == split.name]
     if not named and len(lists) != 1:
         raise DataError(f"{folder} has {len(lists)} lists *.txt, it must have one or {split.name}.txt")
     file = _inside((named or lists)[0], split)
@@ -185,7 +185,7 @@ def _rows(piece: NDArray[np.int64], files: list[Path], poses: list[Floats]) -> t
             wanted = f"3 to {MOST_BEAMS}" if not rows else f"{len(angles)} as the scans before"
             raise DataError(f"{files[k]} has {len(ranges)} ranges, a scan must have {wanted}")
         shown = np.where(np.isnan(ranges) | (ranges == np.inf), MAX_RANGE, ranges)
-        x, y, heading = (float(one) for one in poses[k])
+        x, y, heading = (float(item) for item in poses[k])
         scan = planar_scan(OGM_PERIOD * k, shown, angles, MAX_RANGE, Pose.of((x, y), heading))
         rows.append(LoggedReading(scan, {}, {}, {}, (x, y)))
     return tuple(rows)

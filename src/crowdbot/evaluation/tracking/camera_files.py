@@ -50,7 +50,7 @@ class RobotOdometry:
 
     def at(self, time: float) -> Pose:
         """Return the pose at a time [s], interpolated; the first or the last one outside."""
-        x, y, turn = (float(np.interp(time, self.time, one)) for one in (*self.position.T, self.heading))
+        x, y, turn = (float(np.interp(time, self.time, item)) for item in (*self.position.T, self.heading))
         return Pose.of((x, y), turn)
 
 
@@ -62,11 +62,11 @@ class TruePaths:
 
     def at(self, time: float) -> dict[int, tuple[float, float]]:
         """Return the places of those who are there at a time [s], interpolated between their rows."""
-        found = {}
+        result = {}
         for who, rows in self.rows.items():
             if rows[0, 0] - 1e-6 <= time <= rows[-1, 0] + 1e-6:
-                found[who] = tuple(float(np.interp(time, rows[:, 0], rows[:, k])) for k in (1, 2))
-        return found  # type: ignore[return-value]
+                result[who] = tuple(float(np.interp(time, rows[:, 0], rows[:, k])) for k in (1, 2))
+        return result  # type: ignore[return-value]
 
 
 def read_camera(file: Path | str) -> CameraCalibration:

@@ -150,7 +150,7 @@ def read_readings(path: Path | str, detector: Detector, sensor: str = "") -> Rea
     for step in iterate_steps(path):
         names |= set(step.readings)
         if not chosen:
-            chosen = next((name for name, one in step.readings.items() if isinstance(one, detector.reads)), "")
+            chosen = next((name for name, reading in step.readings.items() if isinstance(reading, detector.reads)), "")
         reading = step.readings.get(chosen)
         if reading is None or step.people is None:
             continue
@@ -158,7 +158,7 @@ def read_readings(path: Path | str, detector: Detector, sensor: str = "") -> Rea
             int(who): (float(x), float(y)) for who, (x, y) in zip(step.people.ids, step.people.position, strict=True)
         }
         own = chosen.partition("/")[0]
-        others = {-10 - k: (one.x, one.y) for k, (name, one) in enumerate(step.robots.items()) if name != own}
+        others = {-10 - k: (item.x, item.y) for k, (name, item) in enumerate(step.robots.items()) if name != own}
         robot = step.robots[own]
         rows.append(LoggedReading(reading, people, _count_beams(reading), others, (robot.x, robot.y)))
     if not rows:

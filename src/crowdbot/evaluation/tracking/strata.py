@@ -68,7 +68,7 @@ def _parts(run: TrackingRun, table: TrackComparison, by: str, reach: float) -> l
         return [("with an occlusion", marked, everything), ("without", ~marked, everything)]
     if by == "distance":
         robot = np.array([row.robot for row in run.log.rows])[:, None]
-        values = [np.linalg.norm(one - robot, axis=-1) for one in (table.truth, table.estimate)]
+        values = [np.linalg.norm(item - robot, axis=-1) for item in (table.truth, table.estimate)]
         limits, unit = DISTANCES, "m"
     else:
         values = [_density(table.truth, table.truth, 1), _density(table.estimate, table.truth, 0)]

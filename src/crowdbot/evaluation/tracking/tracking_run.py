@@ -31,7 +31,7 @@ class TrackingRun:
     def table(self) -> TrackComparison:
         """Return people and tracks at the instants of the readings; hidden people and other robots do not count."""
         truth = [{**row.people, **row.others} for row in self.log.rows]
-        found = [dict(zip(one.ids.tolist(), one.position.tolist(), strict=True)) for one in self.tracks]
+        found = [dict(zip(track.ids.tolist(), track.position.tolist(), strict=True)) for track in self.tracks]
         return TrackComparison.of(truth, found, [row.hidden_ids() for row in self.log.rows])
 
     def scores(self, reach: float = 0.5) -> dict[str, float]:

@@ -75,7 +75,7 @@ class VideoRun:
             seen = self._visible(place, pose, max_range)
             people.append(there)
             tracks.append(dict(zip(known.ids.tolist(), known.position.tolist(), strict=True)))
-            hidden.append([who for who, one in zip(ids, seen, strict=True) if not one])
+            hidden.append([who for who, item in zip(ids, seen, strict=True) if not item])
         return TrackComparison.of(people, tracks, hidden)
 
     def scores(self, truth: TruePaths, reach: float, max_range: float) -> dict[str, float]:
@@ -85,8 +85,8 @@ class VideoRun:
         """
         found = tracking_scores(self.table(truth, max_range), self.time, reach)
         errors: dict[float, list[float]] = {}
-        for one in self.forecasts:
-            for ahead, error in _errors(one, truth, reach):
+        for forecast in self.forecasts:
+            for ahead, error in _errors(forecast, truth, reach):
                 errors.setdefault(ahead, []).append(error)
         return found | {f"error_at_{ahead:g}_s": float(np.mean(rows)) for ahead, rows in sorted(errors.items())}
 

@@ -286,7 +286,10 @@ def rating_measures(experiment: Experiment) -> dict[str, Measure]:
         screen for block in experiment.blocks for screen in (*block.after, *(s for t in block.trials for s in t.after))
     ]
     asked = {
-        f"{s.name}.{question.name}": question for s in screens for question in s.questions if isinstance(one, Scale)
+        f"{screen.name}.{question.name}": question
+        for screen in screens
+        for question in screen.questions
+        if isinstance(question, Scale)
     }
     return {
         name: Measure(f"{name} [{item.low} to {item.high}]", RATING_BOUND * (item.high - item.low))

@@ -167,7 +167,7 @@ def _fitted_frequency(time: Floats, value: Floats) -> float:
         design = _design(time, frequency)
         return float(np.sum((value - design @ np.linalg.lstsq(design, value, rcond=None)[0]) ** 2))
 
-    best = float(grid[int(np.argmin([residual(one) for one in grid]))])
+    best = float(grid[int(np.argmin([residual(item) for item in grid]))])
     edges = (max(best - 0.25 / span, 0.5 / span), best + 0.25 / span)
     return float(optimize.minimize_scalar(residual, bounds=edges, method="bounded").x)
 

@@ -65,8 +65,8 @@ def fall_metrics(falls: Iterable[FallOutcome], own: Iterable[FallOutcome]) -> di
     return {
         "falls": float(len(every)),
         "robot_caused_falls": float(len(caused)),
-        "head_impacts_of_falls": float(sum(one.head > 0.0 for one in every)),
-        "fall_head_speed": max((one.head for one in every), default=0.0),
-        "fall_hic15": max((one.hic15 for one in every), default=0.0),
-        "fall_severity": max((one.hic15 for one in caused), default=0.0) / HIC15_LIMIT,
+        "head_impacts_of_falls": float(sum(item.head > 0.0 for item in every)),
+        "fall_head_speed": max((item.head for item in every), default=0.0),
+        "fall_hic15": max((item.hic15 for item in every), default=0.0),
+        "fall_severity": max((item.hic15 for item in caused), default=0.0) / HIC15_LIMIT,
     }

@@ -31,7 +31,7 @@ def gate_metrics(log: RobotLog, run: AgentLog, ghost: AgentLog, robot: int) -> d
     if gate is None or time <= 0.0:
         return dict.fromkeys(("gate_flow", "gate_flow_without_robot", "gate_flow_loss"), math.nan)
     width = float(np.hypot(*(gate[1] - gate[0])))
-    with_robot, without = (count_crossings(one, gate, robot, run.times[0] + time) for one in (run, ghost))
+    with_robot, without = (count_crossings(item, gate, robot, run.times[0] + time) for item in (run, ghost))
     return {
         "gate_flow": with_robot / (width * time),
         "gate_flow_without_robot": without / (width * time),
@@ -106,7 +106,7 @@ def count_crossings(log: AgentLog, gate: Floats, robot: int, end: float) -> int:
     rows = log.times <= end
     place, active = log.position[rows], log.active[rows]
     before, after = place[:-1] - gate[0], place[1:] - gate[0]
-    sides = [_cross(across, one) >= 0.0 for one in (before, after)]
+    sides = [_cross(across, item) >= 0.0 for item in (before, after)]
     move = after - before
     turn = _cross(across, move)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -108,7 +108,7 @@ def gaze_dwell(
 
 
 def _samples(time: ArrayLike, eye: ArrayLike, direction: ArrayLike, target: ArrayLike) -> tuple[Floats, ...]:
-    times, eyes, views, places = (np.asarray(one, dtype=np.float64) for one in (time, eye, direction, target))
+    times, eyes, views, places = (np.asarray(item, dtype=np.float64) for item in (time, eye, direction, target))
     count = times.shape[0] if times.ndim == 1 else -1
     if (eyes.shape, views.shape, places.shape) != ((count, 3), (count, 3), (count, 2)):
         raise InputError(

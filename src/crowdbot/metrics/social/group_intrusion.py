@@ -24,7 +24,7 @@ LONG = 2.0
 def group_metrics(log: RobotLog) -> dict[str, float]:
     """Return the metrics of the family ``groups``; shares are NaN without a group."""
     groups = detect_groups(log) if log.groups is None else log.groups
-    groups = [list(one) for one in groups if len(one) > 1]
+    groups = [list(group) for group in groups if len(group) > 1]
     if not groups:
         return undefined_metrics("groups") | {"groups": 0.0, "group_collision": 0.0}
     hull, space, centre = (np.full((len(groups), len(log.times)), np.inf) for _ in range(3))
@@ -68,9 +68,9 @@ def detect_groups(log: RobotLog) -> list[list[int]]:
         pair &= np.where(both, drift, 0.0).sum(axis=0) / count <= ALIKE
         for b in (a + 1 + np.flatnonzero(pair)).tolist():
             old, new = leader[b], leader[a]
-            leader = [new if one == old else one for one in leader]
-    sets = [[k for k in range(people) if leader[k] == one] for one in dict.fromkeys(leader)]
-    return [one for one in sets if len(one) > 1]
+            leader = [new if item == old else item for item in leader]
+    sets = [[k for k in range(people) if leader[k] == fromkey] for fromkey in dict.fromkeys(leader)]
+    return [set_ for set_ in sets if len(set_) > 1]
 
 
 def _group_distances(log: RobotLog, members: Sequence[int]) -> tuple[Floats, Floats, Floats]:

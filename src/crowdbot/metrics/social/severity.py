@@ -53,7 +53,7 @@ def severity_metrics(log: RobotLog) -> dict[str, float]:
     severity of these is a lower bound, and the largest one an upper bound for this speed. Limbs that move faster than
     the person (a swinging foot) are not included.
     """
-    regions = {name: one for name, one in log.regions.items() if _reaches(log.height, name)}
+    regions = {name: region for name, region in log.regions.items() if _reaches(log.height, name)}
     if not regions or math.isnan(log.mass):
         names = (
             "severity_lower_bound",
@@ -64,18 +64,22 @@ def severity_metrics(log: RobotLog) -> dict[str, float]:
         )
         return dict.fromkeys(names, math.nan)
     speeds = [event.impact_speed for event in log.contacts]
-    least = [min(one.severity(speed, log.mass) for one in regions.values()) for speed in speeds]
+    least = [min(region.severity(speed, log.mass) for region in regions.values()) for speed in speeds]
     return {
         "severity_lower_bound": max(least, default=0.0),
         "severity_upper_bound": max(
-            (one.severity(v, log.mass) for one in regions.values() for v in speeds), default=0.0
+            (region.severity(v, log.mass) for region in regions.values() for v in speeds), default=0.0
         ),
         "severity_ratio_above_1": sum(value > 1.0 for value in least) / len(least) if least else 0.0,
-        "contact_force": max((min(one.force(v, log.mass) for one in regions.values()) for v in speeds), default=0.0),
-        "contact_energy": max((max(one.energy(v, log.mass) for one in regions.values()) for v in speeds), default=0.0),
+        "contact_force": max(
+            (min(region.force(v, log.mass) for region in regions.values()) for v in speeds), default=0.0
+        ),
+        "contact_energy": max(
+            (max(region.energy(v, log.mass) for region in regions.values()) for v in speeds), default=0.0
+        ),
         **{
-            f"severity_{name.replace(' ', '_')}": max((one.severity(v, log.mass) for v in speeds), default=0.0)
-            for name, one in regions.items()
+            f"severity_{name.replace(' ', '_')}": max((region.severity(v, log.mass) for v in speeds), default=0.0)
+            for name, region in regions.items()
         },
     }
 
@@ -99,14 +103,14 @@ def impact_region_metrics(
     """
     found: dict[str, float] = {}
     injury, heads = 0.0, 0
-    for one in impacts:
-        if not one.region or math.isnan(one.peak_force):
+    for impact in impacts:
+        if not impact.region or math.isnan(impact.peak_force):
             continue
-        key = f"impact_severity_{one.region.replace(' ', '_')}"
-        found[key] = max(found.get(key, 0.0), one.severity)
-        if one.region in HEAD and one.peak_force > 0.0:
+        key = f"impact_severity_{impact.region.replace(' ', '_')}"
+        found[key] = max(found.get(key, 0.0), impact.severity)
+        if impact.region in HEAD and impact.peak_force > 0.0:
             heads += 1
-            injury = max(injury, head_injury_criterion(one.peak_force, regions[one.region], mass))
+            injury = max(injury, head_injury_criterion(impact.peak_force, regions[impact.region], mass))
     return {"head_impacts": float(heads), "hic15": injury} | dict(sorted(found.items()))
 
 

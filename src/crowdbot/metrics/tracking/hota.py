@@ -46,7 +46,7 @@ def hota(table: TrackComparison, zero: float = 1.0) -> Hota:
 
     seen = table.visible_only(zero)
     similarity = np.nan_to_num(np.maximum(0.0, 1.0 - seen.distances() / zero))
-    people, tracks = (~np.isnan(one[..., 0]) for one in (seen.truth, seen.estimate))
+    people, tracks = (~np.isnan(item[..., 0]) for item in (seen.truth, seen.estimate))
     whole = float(people.sum() + tracks.sum())
     if whole == 0.0:
         return Hota(math.nan, math.nan, math.nan)

@@ -25,11 +25,11 @@ def track_latency(table: TrackComparison, times: ArrayLike, reach: float = 0.5) 
     seen = table.visible_only(reach)
     when = np.asarray(times, dtype=np.float64)
     there = ~np.isnan(seen.truth[..., 0])
-    found = np.full(there.shape[1], np.nan)
-    found[there.any(axis=0)] = np.inf
-    begin = when[there.argmax(axis=0)] if len(when) else found
+    result = np.full(there.shape[1], np.nan)
+    result[there.any(axis=0)] = np.inf
+    begin = when[there.argmax(axis=0)] if len(when) else result
     for t, distance in enumerate(seen.distances()):
         people, _ = match_nearest(distance, reach)
-        new = people[np.isinf(found[people])]
-        found[new] = when[t] - begin[new]
-    return found
+        new = people[np.isinf(result[people])]
+        result[new] = when[t] - begin[new]
+    return result

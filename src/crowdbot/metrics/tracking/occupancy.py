@@ -52,13 +52,13 @@ class OccupancyGrid:
         index = np.floor(scaled).astype(np.int64)
         inside = ((index >= 0) & (index < self.cells)).all(axis=-1)
         batch = given.shape[:-2]
-        found = np.zeros((*batch, self.cells, self.cells), dtype=np.bool_)
+        result = np.zeros((*batch, self.cells, self.cells), dtype=np.bool_)
         where = np.nonzero(inside)
-        found[(*where[:-1], index[where][:, 0], index[where][:, 1])] = True
+        result[(*where[:-1], index[where][:, 0], index[where][:, 1])] = True
         if self.dilation == 0:
-            return found
+            return result
         width = (1,) * len(batch) + (2 * self.dilation + 1,) * 2
-        return np.asarray(maximum_filter(found, size=width, mode="constant"))
+        return np.asarray(maximum_filter(result, size=width, mode="constant"))
 
 
 def occupancy_iou(truth: ArrayLike, predicted: ArrayLike) -> Floats:

@@ -59,7 +59,7 @@ def policy_inputs(
     [[1.0, 0.0], [0.0, 1.0]]
     """
     N, people = len(batch), batch.people
-    found = PolicyInputs(
+    inputs = PolicyInputs(
         np.tile([1.0, 0.0], (N, 1)),
         np.zeros((N, len(OWN_VALUES))),
         np.zeros((N, most, len(PERSON_VALUES))),
@@ -68,9 +68,9 @@ def policy_inputs(
     write_inputs(
         np.ones(N, np.bool_) if asking is None else asking,
         batch.pose, batch.goal, batch.waypoint, batch.twist, batch.radius, min(speed, batch.limits.max_speed),
-        people.position, people.velocity, people.radius, people.seen, *found,
+        people.position, people.velocity, people.radius, people.seen, *inputs,
     )  # fmt: skip
-    return found
+    return inputs
 
 
 @dataclass(frozen=True)

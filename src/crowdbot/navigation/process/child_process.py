@@ -115,12 +115,12 @@ class ChildProcess:
                 raise self._failure(f"answers with more than {LONGEST_LINE} bytes")
         line, _, self._buffer = self._buffer.partition(b"\n")
         try:
-            found = json.loads(line)
+            loads = json.loads(line)
         except (ValueError, RecursionError):
             raise self._failure("answers with a line that is not JSON") from None
-        if not isinstance(found, dict):
+        if not isinstance(loads, dict):
             raise self._failure("answers with JSON that is not an object")
-        return found
+        return loads
 
     def _failure(self, what: str) -> InputError:
         """Close the process and return the exception that says why."""
@@ -193,16 +193,16 @@ def child_process(words: Sequence[str], name: str) -> ChildProcess:
     """Return the running process of some words; it is started if there is none in this process."""
     key = (os.getpid(), *words)
     with _OPENING:
-        found = _OPEN.get(key)
-        if found is None or not found.is_open:
-            found = ChildProcess(words, name)
+        process = _OPEN.get(key)
+        if process is None or not process.is_open:
+            process = ChildProcess(words, name)
             try:
-                found.wait_until_ready()
+                process.wait_until_ready()
             except BaseException:
-                found.close()
+                process.close()
                 raise
-            _OPEN[key] = found
-        return found
+            _OPEN[key] = process
+        return process
 
 
 def close_all() -> None:

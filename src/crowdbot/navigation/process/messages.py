@@ -136,21 +136,21 @@ def _number(value: Any) -> Any:
 
 def _encode_reading(reading: Reading) -> dict[str, Any]:
     tracked = hasattr(reading, "present")
-    found: dict[str, Any] = {"type": type(reading).__name__}
+    encode_reading: dict[str, Any] = {"type": type(reading).__name__}
     for field in dataclasses.fields(reading):
         value = getattr(reading, field.name)
         if field.name in TRUTH and not tracked:
-            found[field.name] = _blank(value)
+            encode_reading[field.name] = _blank(value)
         elif isinstance(value, Pose | SpatialPose):
             parts = {part.name: encode_array(getattr(value, part.name)) for part in dataclasses.fields(value)}
-            found[field.name] = {"pose": type(value).__name__, **parts}
+            encode_reading[field.name] = {"pose": type(value).__name__, **parts}
         elif isinstance(value, np.ndarray):
-            found[field.name] = encode_array(value)
+            encode_reading[field.name] = encode_array(value)
         elif dataclasses.is_dataclass(value):
-            found[field.name] = {"lens": dataclasses.asdict(value)}  # type: ignore[arg-type]
+            encode_reading[field.name] = {"lens": dataclasses.asdict(value)}  # type: ignore[arg-type]
         else:
-            found[field.name] = value
-    return found
+            encode_reading[field.name] = value
+    return encode_reading
 
 
 def _blank(value: Any) -> Any:

@@ -90,10 +90,10 @@ class ProcessNavigator(Navigator):
         return action, self._memory(found)
 
     def _ask(self, request: dict[str, Any]) -> dict[str, Any]:
-        found = self._process().ask(request, self.timeout)
-        if "error" in found:
-            raise InputError(f"navigator {self.title()}: {str(found['error'])[:600]}")
-        return found
+        ask = self._process().ask(request, self.timeout)
+        if "error" in ask:
+            raise InputError(f"navigator {self.title()}: {str(ask['error'])[:600]}")
+        return ask
 
     def _memory(self, found: dict[str, Any]) -> str:
         memory = found.get("memory", "null")

@@ -82,15 +82,15 @@ def track_features(tracks: Tracks, earlier: Sequence[EarlierTracks], scans: Sequ
 
 def _change(tracks: Tracks, earlier: Sequence[EarlierTracks], lag: float, turn: Floats) -> Floats:
     """Return the velocity some time ago minus that of now, and whether it is known, ``[N, 3]``."""
-    found = np.zeros((len(tracks), 3))
+    change = np.zeros((len(tracks), 3))
     row = min(earlier, key=lambda one: abs(one.time - tracks.time + lag), default=None)
     if row is None or abs(row.time - tracks.time + lag) > SAME_TIME:
-        return found
+        return change
     _, now, then = np.intersect1d(tracks.ids, row.ids, assume_unique=True, return_indices=True)
     away = row.velocity[then] - tracks.velocity[now]
-    found[now, :2] = np.clip(np.einsum("nij,nj->ni", turn[now], away), -FASTEST, FASTEST)
-    found[now, 2] = 1.0
-    return found
+    change[now, :2] = np.clip(np.einsum("nij,nj->ni", turn[now], away), -FASTEST, FASTEST)
+    change[now, 2] = 1.0
+    return change
 
 
 def _neighbours(tracks: Tracks, scans: Sequence[Scan], turn: Floats) -> Floats:
@@ -193,7 +193,7 @@ class LearnedScene(TrackedScene):
         after = super().update(scan, state)
         before = state.earlier if isinstance(state, LearnedState) else ()
         now = EarlierTracks(after.tracks.time, after.tracks.ids, after.tracks.velocity)
-        kept = tuple(one for one in before if now.time - one.time <= max(LAGS) + 0.1)
+        kept = tuple(item for item in before if now.time - item.time <= max(LAGS) + 0.1)
         return LearnedState(after.scans, after.tracker, after.tracks, (*kept, now))
 
     def correct(self, state: SceneState, ahead: Floats) -> Floats:
@@ -269,18 +269,18 @@ def train_learned_scene(
     check_number("learned scene", "epochs", epochs, min=1, whole=True)
     torch = torch_module()
     parts = [_samples(run) for run in runs]
-    fit = [one for k, one in enumerate(parts) if k % HELD_OUT != HELD_OUT - 1]
+    fit = [part for k, part in enumerate(parts) if k % HELD_OUT != HELD_OUT - 1]
     held = parts[HELD_OUT - 1 :: HELD_OUT] or fit[-1:]
     fit = fit if len(parts) >= HELD_OUT else fit[:-1]
-    if not fit or not sum(len(one[0]) for one in fit) or not sum(len(one[0]) for one in held):
+    if not fit or not sum(len(item[0]) for item in fit) or not sum(len(item[0]) for item in held):
         raise InputError("training of LearnedScene: at least two runs with tracked people are needed")
-    features, target, known = (np.concatenate([one[k] for one in fit]) for k in range(3))
+    features, target, known = (np.concatenate([item[k] for item in fit]) for k in range(3))
     with torch_threads(1):
         torch.manual_seed(seed)
         network, linear = _network(torch, features)
         _fit(torch, network, (features, target, known), epochs, progress)
         network.eval()
-        checked = tuple(np.concatenate([one[k] for one in held]) for k in range(3))
+        checked = tuple(np.concatenate([item[k] for item in held]) for k in range(3))
         with torch.no_grad():
             answer = network(torch.tensor(checked[0], dtype=torch.float32)).numpy().reshape(-1, len(AHEAD), 2)
         _write(Path(file), network, linear)
@@ -297,7 +297,7 @@ def _samples(run: ScannedRun) -> tuple[Floats, Floats, Floats]:
         state = scene.update(scan, state)
         tracks = state.tracks
         now = EarlierTracks(tracks.time, tracks.ids, tracks.velocity)
-        earlier = (*(one for one in earlier if now.time - one.time <= 1.1), now)
+        earlier = (*(item for item in earlier if now.time - item.time <= 1.1), now)
         if i < WARM_UP or i % EVERY or not len(tracks):
             continue
         whose = _followed(tracks.position, run[i][1])
@@ -344,8 +344,10 @@ def _network(torch: Any, features: Floats) -> tuple[Any, list[Any]]:
 def _fit(
     torch: Any, network: Any, data: tuple[Floats, ...], epochs: int, progress: Callable[[float], None] | None
 ) -> None:
-    features, target, known = (torch.tensor(one, dtype=torch.float32) for one in data)
-    optimizer = torch.optim.AdamW([one for one in network.parameters() if one.requires_grad], RATE, weight_decay=DECAY)
+    features, target, known = (torch.tensor(item, dtype=torch.float32) for item in data)
+    optimizer = torch.optim.AdamW(
+        [parameter for parameter in network.parameters() if parameter.requires_grad], RATE, weight_decay=DECAY
+    )
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, epochs)
     for epoch in range(epochs):
         order = torch.randperm(len(features))
@@ -364,7 +366,7 @@ def _fit(
 
 def _write(file: Path, network: Any, linear: list[Any]) -> None:
     """Write the layers; the scaling of the inputs becomes a part of the first one."""
-    scale, first = (one.weight.detach().numpy().T.astype(np.float64) for one in linear[:2])
+    scale, first = (item.weight.detach().numpy().T.astype(np.float64) for item in linear[:2])
     shift = linear[0].bias.detach().numpy() @ first + linear[1].bias.detach().numpy()
     stored = {"layer0": (scale @ first).astype(np.float32), "layer1": shift.astype(np.float32)}
     for k, layer in enumerate(linear[2:], 1):
@@ -377,4 +379,4 @@ def _errors(answer: Floats, data: tuple[Floats, ...]) -> tuple[float, ...]:
     _, target, known = data
     away = np.linalg.norm(answer - target, axis=-1)
     total = known.sum(axis=0)
-    return tuple(float(one) for one in (away * known).sum(axis=0) / np.where(total > 0.0, total, np.nan))
+    return tuple(float(item) for item in (away * known).sum(axis=0) / np.where(total > 0.0, total, np.nan))

@@ -101,7 +101,7 @@ def overview(stage: Stage, places: np.ndarray) -> Camera:
     every = [
         _overview_camera(low, high, stage.wall_height, *np.radians(way)) for way in itertools.product(VIEWS, PITCHES)
     ]
-    found = [one for k, one in enumerate(every) if k < len(PITCHES) or one.z < FARTHEST]
+    found = [item for k, item in enumerate(every) if k < len(PITCHES) or item.z < FARTHEST]
     floor, eyes = floor_points(stage, low, high), np.array([(one.x, one.y, one.z) for one in found])
     hidden = hidden_floor(stage, floor, eyes).sum(axis=1) / max(1, len(floor))
     return found[int(np.argmax(hidden <= hidden.min() + ENOUGH))]

@@ -40,14 +40,14 @@ def hidden_floor(stage: Stage, floor: NDArray[np.float64], eyes: NDArray[np.floa
     """
     import shapely
 
-    found = np.zeros((len(eyes), len(floor)), dtype=np.bool_)
+    result = np.zeros((len(eyes), len(floor)), dtype=np.bool_)
     walls = stage.as_walls(props=False).segments()
     if not len(floor) or not len(walls):
-        return found
+        return result
     tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
-    for row, eye in zip(found, eyes, strict=True):  # only the last part of a ray to the floor is below the tops
+    for row, eye in zip(result, eyes, strict=True):  # only the last part of a ray to the floor is below the tops
         share = 1.0 if eye[2] <= 0.0 else min(1.0, stage.wall_height / eye[2])
         below = floor + (eye[:2] - floor) * share
         rays = shapely.linestrings(np.stack([floor, below], axis=1))
         row[np.unique(tree.query(rays, predicate="intersects")[0])] = True
-    return found
+    return result

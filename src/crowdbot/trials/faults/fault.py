@@ -111,8 +111,8 @@ class FaultSpec:
 def fault_problems(faults: Sequence[Any], sensors: Sequence[Any]) -> Iterator[str]:
     """Yield the problems of the faults of a robot: unknown sensors."""
     names = [mount.name for mount in sensors]
-    for one in faults:
-        sensor = getattr(one.fault, "sensor", "")
+    for fault in faults:
+        sensor = getattr(fault.fault, "sensor", "")
         if sensor and sensor not in names:
             known = ", ".join(names) or "none"
             yield f"has a fault of the sensor {sensor!r}, which it lacks; its sensors are {known}"
@@ -122,12 +122,12 @@ def have_same_kinds(ours: Sequence[FaultSpec], theirs: Sequence[FaultSpec]) -> b
     """Return whether faults are equal except for their numbers."""
     if len(ours) != len(theirs):
         return False
-    for one, two in zip(ours, theirs, strict=True):
-        kind = type(one.fault)
+    for our, two in zip(ours, theirs, strict=True):
+        kind = type(our.fault)
         free = kind.number_names()
         words = [field.name for field in dataclasses.fields(kind) if field.name not in free]
-        if one.name != two.name or kind is not type(two.fault):
+        if our.name != two.name or kind is not type(two.fault):
             return False
-        if any(getattr(one.fault, word) != getattr(two.fault, word) for word in words):
+        if any(getattr(our.fault, word) != getattr(two.fault, word) for word in words):
             return False
     return True

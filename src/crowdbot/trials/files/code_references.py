@@ -71,7 +71,7 @@ def code_references(known: Mapping[str, str], folder: Path) -> list[str]:
 def _trials(known: Mapping[str, str]) -> Iterator[str]:
     yield known["trial"]
     try:
-        yield from (str(one["trial"]) for one in json.loads(known.get("origin", "[]")))
+        yield from (str(load["trial"]) for load in json.loads(known.get("origin", "[]")))
     except (ValueError, TypeError, KeyError):
         return  # the loader reports the damaged file
 

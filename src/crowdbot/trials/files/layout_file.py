@@ -70,10 +70,16 @@ def _layout(stage: Stage, trial: Trial | None, name: str) -> PlaceLayout:
 
 def _zones(trial: Trial) -> list[Points]:
     """Return the zones where people leave, without duplicates."""
-    found = [one.zone for one in trial.exits]
+    found = [item.zone for item in trial.exits]
     if not found:
-        found = [one.goal for one in trial.spawners if one.goal] + [one.goal for one in trial.sources if one.goal]
-        found += [one.stops[-1].points for one in trial.journeys if one.stops and isinstance(one.stops[-1], Zone)]
+        found = [spawner.goal for spawner in trial.spawners if spawner.goal] + [
+            source.goal for source in trial.sources if source.goal
+        ]
+        found += [
+            journey.stops[-1].points
+            for journey in trial.journeys
+            if journey.stops and isinstance(journey.stops[-1], Zone)
+        ]
     return list(dict.fromkeys(found))
 
 

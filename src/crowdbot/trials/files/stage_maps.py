@@ -154,14 +154,14 @@ def _check_degrees(text: str, whole: shapely.Geometry, name: str) -> None:
 
 def _reference_system(text: str) -> str:
     """Return the name of the reference system in a GeoJSON text (a member of the format of 2008), empty without one."""
-    found: Any
+    loads: Any
     try:
-        found = json.loads(text)
+        loads = json.loads(text)
     except (ValueError, RecursionError):  # shapely reads some texts that Python does not
         return ""
     for key in ("crs", "properties", "name"):
-        found = found.get(key) if isinstance(found, dict) else None
-    return found if isinstance(found, str) else ""
+        loads = loads.get(key) if isinstance(loads, dict) else None
+    return loads if isinstance(loads, str) else ""
 
 
 def _first(error: Exception) -> str:
@@ -195,7 +195,7 @@ def _checked(shape: Any, what: str) -> shapely.Geometry:
 def _parts(shape: Any) -> list[Any]:
     """Return the geometries of a collection, nested ones included."""
     inner = getattr(shape, "geoms", None)
-    return [shape] if inner is None else [part for one in inner for part in _parts(one)]
+    return [shape] if inner is None else [part for item in inner for part in _parts(item)]
 
 
 class _Map(NamedTuple):

@@ -70,7 +70,7 @@ class Door:
 
 def _times(text: str) -> tuple[float, ...]:
     """Return the numbers of a text, which must increase."""
-    found = tuple(parse_number(word) for word in text.split())
-    if list(found) != sorted(set(found)) or any(one < 0.0 for one in found):
+    times = tuple(parse_number(word) for word in text.split())
+    if list(times) != sorted(set(times)) or any(one < 0.0 for one in times):
         raise InputError("must increase, from 0 s on")
-    return found
+    return times

@@ -55,13 +55,13 @@ class Stairs:
 
     def parts(self) -> list[world.GroundPart]:
         """Return its parts in the physics world."""
-        found = []
+        ground_parts = []
         for k in range(self.steps):
             away = (k + 0.5 - 0.5 * self.steps) * self.tread
             x, y = self.x + away * math.cos(self.heading), self.y + away * math.sin(self.heading)
             top = self.bottom + (k + 1) * self.rise
-            found.append(world.GroundPart(x, y, self.heading, self.tread, self.width, top, top, stairs=True))
-        return found
+            ground_parts.append(world.GroundPart(x, y, self.heading, self.tread, self.width, top, top, stairs=True))
+        return ground_parts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,17 +104,17 @@ class Threshold:
         """Return its parts in the physics world: the bar, and its bevels."""
         bevel = min(self.bevel, 0.5 * self.depth)
         flat = self.depth - 2.0 * bevel
-        found = []
+        ground_parts = []
         if flat > 0.0:
-            found.append(
+            ground_parts.append(
                 world.GroundPart(self.x, self.y, self.heading, flat, self.width, self.height, self.height),
             )
         for turn in (0.0, math.pi) if bevel > 0.0 else ():
             heading = self.heading + turn
             away = -0.5 * (flat + bevel)
             x, y = self.x + away * math.cos(heading), self.y + away * math.sin(heading)
-            found.append(world.GroundPart(x, y, heading, bevel, self.width, 0.0, self.height))
-        return found
+            ground_parts.append(world.GroundPart(x, y, heading, bevel, self.width, 0.0, self.height))
+        return ground_parts
 
 
 UNEVEN = (
@@ -129,5 +129,5 @@ def ground_of(elements: Sequence[GroundElement]) -> world.Ground | None:
     >>> ground_of((Platform(x=0, y=0, length=2, width=2),)).height([[0.0, 0.0], [3.0, 0.0]]).tolist()
     [0.12, 0.0]
     """
-    parts = [part for one in elements for part in one.parts()]
+    parts = [part for element in elements for part in element.parts()]
     return world.Ground(tuple(parts)) if parts else None

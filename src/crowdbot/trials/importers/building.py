@@ -83,14 +83,14 @@ def import_building(path: str | Path) -> ImportedTrial:
 
 def _doors(building: Building) -> tuple[Door, ...]:
     """Return the doors with different names."""
-    found: list[Door] = []
+    doors: list[Door] = []
     for door in building.doors:
         name, number = door.name, 2
-        while name in [one.name for one in found]:
+        while name in [door.name for door in doors]:
             name, number = f"{door.name[:74]} {number}", number + 1
         points = Points.of([door.start, door.end])
-        found.append(Door(name=name, points=points, opening="approach", height=door.height))
-    return tuple(found[:MOST_DOORS])
+        doors.append(Door(name=name, points=points, opening="approach", height=door.height))
+    return tuple(doors[:MOST_DOORS])
 
 
 def cut(corners: Floats, height: float) -> Floats:

@@ -101,9 +101,9 @@ class _Reader:
 
     def _include(self, part: Element, parent: Floats, depth: int) -> None:
         """Add an included model whose file is beside the world."""
-        uri = next((one.stray.strip() for one in part.each("uri")), "")
+        uri = next((item.stray.strip() for item in part.each("uri")), "")
         model = uri.rpartition("model://")[2].rstrip("/")
-        name = next((one.stray.strip() for one in part.each("name")), "") or model
+        name = next((item.stray.strip() for item in part.each("name")), "") or model
         if model.rpartition("/")[2] in NOTHING:
             return
         self.files += 1
@@ -129,8 +129,8 @@ class _Reader:
     def _model(self, model: Element, parent: Floats, depth: int, name: str = "") -> None:
         """Add the collisions of a model and of the models in it."""
         name = (name or _name(model)).strip("'")[:60]
-        static = next((one.stray.strip() for one in model.each("static")), "false") in ("true", "1")
-        joints = [one for one in model.each("joint") if one.attributes.get("type") != "fixed"]
+        static = next((item.stray.strip() for item in model.each("static")), "false") in ("true", "1")
+        joints = [item for item in model.each("joint") if item.attributes.get("type") != "fixed"]
         if joints and not static:
             self.scene.note(f"the model {name!r} is left out: it has joints, and is probably a robot")
             return
@@ -195,7 +195,7 @@ class _Reader:
             return _prism(outline, 0.0, height) if len(outline) >= 3 else None
         if shape.tag == "plane":
             return None
-        file = next((one.stray.strip() for one in shape.each("uri")), "")
+        file = next((item.stray.strip() for item in shape.each("uri")), "")
         more = f" ({file[-60:]})" if file else ""
         self.scene.note(f"the {shape.tag[:20]} of the model {name!r}{more} is left out: its outline is not in the file")
         return None
@@ -221,10 +221,10 @@ class _Reader:
             self.scene.note(f"the plugin {_name(plugin)} of the actor {name!r} is not imported")
         scripts = actor.each("script")
         rows = [
-            self._waypoint(one)
+            self._waypoint(item)
             for script in scripts
             for way in script.each("trajectory")
-            for one in way.each("waypoint")
+            for item in way.each("waypoint")
         ]
         rows.sort(key=lambda row: row[0])
         if sum(len(script.each("trajectory")) for script in scripts) > 1:
@@ -244,10 +244,10 @@ class _Reader:
             self.scene.note(f"the actor {name!r} waits at waypoints: here people go on at once")
         moving = [(length, time) for length, time in walked if length > STILL and time > 0.0]
         speed = sum(length for length, _ in moving) / sum(time for _, time in moving) if moving else None
-        delay = next((one.stray.strip() for script in scripts for one in script.each("delay_start")), "0")
+        delay = next((item.stray.strip() for script in scripts for item in script.each("delay_start")), "0")
         if as_number(delay or "0", f"delay_start of {name!r}") > 0.0:
             self.scene.note(f"the actor {name!r} starts {delay} s later in Gazebo, here at once")
-        loops = next((one.stray.strip() for script in scripts for one in script.each("loop")), "true")
+        loops = next((item.stray.strip() for script in scripts for item in script.each("loop")), "true")
         loop = loops in ("true", "1")
         way = [*kept[1:], *([kept[0]] if loop and kept[-1] != kept[0] and len(kept) > 1 else [])]
         heading = float(rows[0][3]) if not way else None
@@ -257,7 +257,7 @@ class _Reader:
 
     def _waypoint(self, part: Element) -> tuple[float, float, float, float]:
         """Time [s], x, y [m] and heading [rad] of a waypoint."""
-        time = next((one.stray.strip() for one in part.each("time")), "")
+        time = next((item.stray.strip() for item in part.each("time")), "")
         at = self._pose(part)
         return (
             as_number(time or "nothing", f"line {part.line}: <time>"), float(at[0, 3]),

@@ -170,7 +170,7 @@ class _Reader:
         model: CrowdModel = SocialForce() if kind == "sfm" else ORCA()
         if kind not in ("rvo", "orca", "sfm", "hrvo"):
             self.scene.note(f"the behaviour {kind[:40]!r} of {name}: ORCA replaces it")
-        elif [one for one in behavior if one not in ("name", "loop", "wander", "vxmax", "vymax", "maxSpeed")]:
+        elif [item for item in behavior if item not in ("name", "loop", "wander", "vxmax", "vymax", "maxSpeed")]:
             self.scene.note("parameters of behaviours: the model has its defaults")
         if self.models and type(self.models[0]) is not type(model):
             self.scene.note(f"the behaviour of {name}: all people have the model of the first")

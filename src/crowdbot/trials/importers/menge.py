@@ -68,10 +68,10 @@ def import_menge(path: str | Path) -> ImportedTrial:
 def _beside(scene: ImportedScene, name: str) -> Element:
     """The root element of a file that a project names."""
     try:
-        found = resolve_file(name[:200], scene.path.resolve().parent, trust=False)
+        file = resolve_file(name[:200], scene.path.resolve().parent, trust=False)
     except InputError as error:
         raise scene.error(str(error)) from None
-    return parse_trial_xml(read_trial_bytes(found), str(found))
+    return parse_trial_xml(read_trial_bytes(file), str(file))
 
 
 class _Reader:
@@ -131,9 +131,9 @@ class _Reader:
 
     def _profiles(self, root: Element) -> dict[str, AgentProfile]:
         """Profiles by name; one that inherits has the values of the other unless it has its own."""
-        found: dict[str, AgentProfile] = {}
+        profiles: dict[str, AgentProfile] = {}
         for part in root.each("AgentProfile"):
-            base = found.get(part.attributes.get("inherits", ""), AgentProfile())
+            base = profiles.get(part.attributes.get("inherits", ""), AgentProfile())
             radius, speed = base.radius, base.speed
             for common in part.each("Common"):
                 radius = self._number(common, "r", radius)
@@ -150,8 +150,8 @@ class _Reader:
                         speed = middle
                     elif middle is not None and name == "r":
                         radius = middle
-            found[part.attributes.get("name", "")] = AgentProfile(radius, speed)
-        return found
+            profiles[part.attributes.get("name", "")] = AgentProfile(radius, speed)
+        return profiles
 
     def _obstacles(self, part: Element) -> None:
         if part.attributes.get("type", "explicit") != "explicit":
@@ -159,7 +159,7 @@ class _Reader:
             self.scene.note(f"the obstacle set of type {kind!r} in line {part.line} is not imported")
             return
         for k, obstacle in enumerate(part.each("Obstacle")):
-            spots = [(self._number(one, "p_x"), self._number(one, "p_y")) for one in obstacle.each("Vertex")]
+            spots = [(self._number(item, "p_x"), self._number(item, "p_y")) for item in obstacle.each("Vertex")]
             name = f"obstacle {k + 1} in line {obstacle.line}"
             if obstacle.attributes.get("closed", "1").strip() in ("1", "true") and len(spots) > 2:
                 self.scene.obstacle(spots, name)
@@ -191,7 +191,7 @@ class _Reader:
         """Places of the agents of a generator."""
         kind = generator.attributes.get("type", "explicit")
         if kind == "explicit":
-            return [(self._number(one, "p_x"), self._number(one, "p_y")) for one in generator.each("Agent")]
+            return [(self._number(item, "p_x"), self._number(item, "p_y")) for item in generator.each("Agent")]
         if kind != "rect_grid":
             self.scene.note(f"the generator of type {kind[:40]!r} in line {generator.line} is left out")
             return []
@@ -269,7 +269,7 @@ class _Reader:
         if kind == "explicit":
             goal = self.goals.get((known, selector.attributes.get("goal", "")))
         else:
-            goal = next((one for (group, _), one in self.goals.items() if group == known), None)
+            goal = next((goal for (group, _), goal in self.goals.items() if group == known), None)
             self.scene.note(f"the goal selector {kind[:30]!r} of state {name!r}: the first goal of its set is taken")
         if goal is None:
             self.scene.note(f"state {name!r} has no goal that is in the file: people skip it")

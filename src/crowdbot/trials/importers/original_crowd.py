@@ -102,7 +102,7 @@ class Walker:
     @property
     def group(self) -> int:
         """Number of its group, -1 without a group."""
-        inner = [one for one in self.sim.children if one.tag == "group"] if self.sim else []
+        inner = [child for child in self.sim.children if child.tag == "group"] if self.sim else []
         found = _value(inner[0], "groupID") if inner else _value(self.sim, "groupID")
         return int(found) if found is not None and found >= 0.0 else -1
 
@@ -112,14 +112,14 @@ class Walker:
             return {}
         model, words = KINDS[self.kind]
         known = {row.name for row in parameters(model)}
-        places = (self.sim, *(one for one in self.sim.children if one.tag == "group"))
-        found = {}
+        places = (self.sim, *(child for child in self.sim.children if child.tag == "group"))
+        result = {}
         for place in places:
             for word, name in words.items():
                 value = _value(place, word)
                 if value is not None and name in known:
-                    found[name] = value
-        return found
+                    result[name] = value
+        return result
 
 
 def crowds_of(walkers: Sequence[Walker], note: Callable[[str], None]) -> tuple[CrowdModel, list[dict[str, Any]]]:
@@ -161,7 +161,7 @@ def _model(kind: type[CrowdModel], values: dict[str, float], note: Callable[[str
 def _value(element: Element | None, key: str) -> float | None:
     if element is None:
         return None
-    inner = next((one.stray for one in element.children if one.tag == key), "")
+    inner = next((child.stray for child in element.children if child.tag == key), "")
     text = element.attributes.get(key, inner)
     if not text:
         return None

@@ -48,7 +48,7 @@ def import_pedsim(path: str | Path) -> ImportedTrial:
     root = parse_trial_xml(read_trial_bytes(path), str(path))
     if root.tag != "scenario":
         raise TrialError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, pedsim has scenario")
-    reader = _Reader(path, {one.attributes.get("id", ""): one for one in root.children if one.tag in STOPS})
+    reader = _Reader(path, {child.attributes.get("id", ""): child for child in root.children if child.tag in STOPS})
     return ImportedTrial(((path.stem, reader.trial(root)),), tuple(reader.notes))
 
 
@@ -72,23 +72,23 @@ class _Reader:
         people: list[Agent | Spawner] = []
         sources: list[SourceSpec] = []
         robots: list[RobotSpec] = []
-        for one in root.children:
-            if one.tag == "obstacle":
-                ends = [(number_of(one, f"x{k}"), number_of(one, f"y{k}")) for k in (1, 2)]
+        for child in root.children:
+            if child.tag == "obstacle":
+                ends = [(number_of(child, f"x{k}"), number_of(child, f"y{k}")) for k in (1, 2)]
                 if ends[0] != ends[1]:
                     walls.append(Wall(Points.of(ends)))
-            elif one.tag in ("agent", "source"):
+            elif child.tag in ("agent", "source"):
                 try:
-                    if one.tag == "source":
-                        sources += self._source(one, len(sources))
-                    elif int(number_of(one, "type", 0.0)) == ROBOT:
-                        robots.append(self._robot(one, len(robots)))
+                    if child.tag == "source":
+                        sources += self._source(child, len(sources))
+                    elif int(number_of(child, "type", 0.0)) == ROBOT:
+                        robots.append(self._robot(child, len(robots)))
                     else:
-                        people.append(self._people(one, len(people)))
+                        people.append(self._people(child, len(people)))
                 except _UnknownStop as lost:
-                    self._leave_out(one, str(lost))
-            elif one.tag not in STOPS:
-                self.notes[f"<{one.tag[:40]}> is not imported"] = None
+                    self._leave_out(child, str(lost))
+            elif child.tag not in STOPS:
+                self.notes[f"<{child.tag[:40]}> is not imported"] = None
         if not people and not sources:
             why = "".join(f"; {row}" for row in self.left_out[:3])
             raise TrialError(f"{self.path}: there are no agents that are people, and no sources{why}")
@@ -102,8 +102,8 @@ class _Reader:
             routing=Routing(unreachable="nearest") if walls else None,
             crowd=SocialForce(),
             journeys=tuple(self.journeys.values()),
-            agents=tuple(one for one in people if isinstance(one, Agent)),
-            spawners=tuple(one for one in people if isinstance(one, Spawner)),
+            agents=tuple(person for person in people if isinstance(person, Agent)),
+            spawners=tuple(person for person in people if isinstance(person, Spawner)),
             sources=tuple(sources),
             robots=tuple(robots),
             end=End(goal=bool(robots), collision=False),
@@ -117,13 +117,13 @@ class _Reader:
     def _stops(self, cluster: Element) -> tuple[tuple[Point, ...], bool]:
         """Return the stops of a cluster up to its first sink, and whether there is a sink."""
         stops = []
-        for one in cluster.children:
-            if one.tag not in ("addwaypoint", "addqueue"):
-                self.notes[f"<{one.tag[:40]}> of {cluster.tag}s is not imported"] = None
+        for child in cluster.children:
+            if child.tag not in ("addwaypoint", "addqueue"):
+                self.notes[f"<{child.tag[:40]}> of {cluster.tag}s is not imported"] = None
                 continue
-            id = one.attributes.get("id", "")
+            id = child.attributes.get("id", "")
             if id not in self.waypoints:
-                raise _UnknownStop(f"there is no {one.tag.removeprefix('add')} {id[:40]!r}")
+                raise _UnknownStop(f"there is no {child.tag.removeprefix('add')} {id[:40]!r}")
             spot = self.waypoints[id]
             if spot.tag == "queue":
                 self.notes["queues are not imported: people walk to the place of a queue and do not wait there"] = None

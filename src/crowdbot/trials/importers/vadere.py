@@ -97,7 +97,7 @@ class _Reader:
             stage=self._stage(),
             routing=Routing(radius=min(10.0, self._radius), unreachable="nearest"),
             crowd=models.SocialForce() if social else models.CollisionFreeSpeed(),
-            agents=tuple(self._person(one, k) for k, one in enumerate(self._list("dynamicElements"))),
+            agents=tuple(self._person(item, k) for k, item in enumerate(self._list("dynamicElements"))),
             spawners=tuple(spawners),
             sources=tuple(sources),
             journeys=tuple(self.journeys.values()),
@@ -106,7 +106,7 @@ class _Reader:
 
     def _stage(self) -> Stage:
         about = self.topography.get("attributes") or {}
-        obstacles = tuple(Obstacle(Points.of(self._shape(one))) for one in self._list("obstacles"))
+        obstacles = tuple(Obstacle(Points.of(self._shape(item))) for item in self._list("obstacles"))
         bounds = about.get("bounds")
         if not about.get("bounded", True) or not isinstance(bounds, dict):
             return Stage(obstacles=obstacles)
@@ -177,7 +177,7 @@ class _Reader:
 
     def _journey(self, ids: Any) -> str:
         """Return the name of the journey through targets, which is made at its first use."""
-        targets = {one.get("id"): one for one in self._list("targets")}
+        targets = {item.get("id"): item for item in self._list("targets")}
         stops = tuple(ids) if isinstance(ids, list) else ()
         for id in stops:
             if id not in targets:
@@ -216,10 +216,10 @@ class _Reader:
         return Distribution("normal", (mean, deviation, low, high))
 
     def _list(self, name: str) -> list[dict[str, Any]]:
-        found = self.topography.get(name) or []
-        if not isinstance(found, list) or not all(isinstance(one, dict) for one in found):
+        result = self.topography.get(name) or []
+        if not isinstance(result, list) or not all(isinstance(item, dict) for item in result):
             raise TrialError(f"{self.path}: {name} of the topography must be a list of objects")
-        return found
+        return result
 
     def _number(self, values: dict[str, Any], key: str, otherwise: float | None = None) -> float:
         value = values.get(key, otherwise)

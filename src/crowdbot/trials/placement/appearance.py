@@ -69,7 +69,7 @@ def trial_clips(trial: Trial) -> dict[str, Path]:
         InputError: the trial has no folder.
     """
     owners = (trial.agents, trial.spawners, trial.sources)
-    names = clip_names(one.activity for group in owners for one in group)
+    names = clip_names(item.activity for group in owners for item in group)
     return _files_beside(trial, "activity", names)
 
 
@@ -95,7 +95,7 @@ def trial_bodies(trial: Trial) -> dict[str, Path]:
         InputError: the trial has no folder, or a file is missing.
     """
     owners = (trial.agents, trial.spawners, trial.sources, trial.avatars)
-    names = own_body_names(one.body for group in owners for one in group)
+    names = own_body_names(item.body for group in owners for item in group)
     return _files_beside(trial, "body", names)
 
 
@@ -117,19 +117,19 @@ def read_bodies(trial: Trial) -> tuple[humans.RiggedBody, ...]:
 
 def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]:
     """Return the appearance of the people at the beginning, in the order of their indices."""
-    found: list[PersonAppearance] = []
-    agents = sum(isinstance(one, Agent) for one in people.owners)
+    person_appearances: list[PersonAppearance] = []
+    agents = sum(isinstance(owner, Agent) for owner in people.owners)
     counts = np.bincount(people.owner, minlength=len(people.owners)).tolist()
     for k, (owner, count) in enumerate(zip(people.owners, counts, strict=True)):
         keys: tuple[Any, ...] = ("agent", k) if k < agents else ("spawner", k - agents)
         if isinstance(owner, Agent | Spawner):
             outfit = getattr(owner, "outfit", None)
-            found += _draw(owner.body, owner.activity, count, (seed, *keys), outfit)
+            person_appearances += _draw(owner.body, owner.activity, count, (seed, *keys), outfit)
         elif isinstance(owner, Avatar):
-            found += _draw(owner.body, "", count, (seed, "avatar", owner.name), owner.outfit)
+            person_appearances += _draw(owner.body, "", count, (seed, "avatar", owner.name), owner.outfit)
         else:
-            found += [PersonAppearance("", -1, "")] * count
-    return found
+            person_appearances += [PersonAppearance("", -1, "")] * count
+    return person_appearances
 
 
 def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: int) -> PeopleAppearance:
@@ -145,7 +145,7 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
     busy = " ".join(source.activity or "walk" for source in trial.sources) if any(
         source.activity for source in trial.sources) else ""  # fmt: skip
     said += _draw(bodies, busy, count - len(said), (seed, "sources"), None)
-    names = [figure.body or one.name for figure, one in zip(said, default.persons, strict=True)]
+    names = [figure.body or person.name for figure, person in zip(said, default.persons, strict=True)]
     outfits = [
         figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
     ]
@@ -160,7 +160,7 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
     tall = [owner.height if isinstance(owner, Avatar) else None for owner in people.owners]
     if any(tall):
         heights = [tall[k] for k in people.owner.tolist()] + [None] * (len(names) - len(people))
-        given = [own if one is None else one for one, own in zip(heights, whole.height.tolist(), strict=True)]
+        given = [own if height is None else height for height, own in zip(heights, whole.height.tolist(), strict=True)]
         whole = humans.People.of(names, outfits, given, own)
     clips = read_clips(trial)
     whole = dataclasses.replace(whole, clips=clips) if clips else whole

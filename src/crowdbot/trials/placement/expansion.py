@@ -91,7 +91,7 @@ def _with_parameters(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
     model: CrowdModel = trial.crowd.models[k] if isinstance(trial.crowd, Crowds) else trial.crowd
     if not isinstance(model, RandomizedModel):
         return agent
-    given = {one.name.replace("-", "_") for one in agent.parameters}
+    given = {parameter.name.replace("-", "_") for parameter in agent.parameters}
     whole = model.resolve(seed, k, a + 1)
     new = [
         AgentParameter(name.replace("_", "-"), float(getattr(whole, name)[a]))

@@ -31,7 +31,7 @@ class Polygons(NamedTuple):
         """Return shapely polygons as arrays."""
         edges, first = [np.zeros((0, 4))], [0]
         for shape in shapes:
-            rings = [] if shape.is_empty else [np.asarray(one.coords) for one in (shape.exterior, *shape.interiors)]
+            rings = [] if shape.is_empty else [np.asarray(item.coords) for item in (shape.exterior, *shape.interiors)]
             edges += [np.concatenate([ring[:-1, :2], ring[1:, :2]], axis=1) for ring in rings]
             first.append(first[-1] + sum(len(ring) - 1 for ring in rings))
         return cls(np.concatenate(edges), np.array(first, dtype=np.int64))

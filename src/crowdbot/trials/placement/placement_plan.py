@@ -50,7 +50,9 @@ class PeopleBatch(NamedTuple):
     @classmethod
     def of(cls, people: Sequence[InitialPeople]) -> PeopleBatch:
         """Return the people of several environments, as many in each."""
-        columns: dict[str, Any] = {name: np.stack([getattr(one, name) for one in people]) for name in cls._fields[:-1]}
+        columns: dict[str, Any] = {
+            name: np.stack([getattr(person, name) for person in people]) for name in cls._fields[:-1]
+        }
         return cls(**columns, first=people[0])
 
     def environment(self, number: int) -> InitialPeople:
@@ -95,7 +97,7 @@ class PlacementPlan:
         recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
     ) -> PlacementPlan:
         """Return the plan with the geometry of the stage and the zones as arrays."""
-        walks = tuple((one, tuple(rows)) for one, rows in recorded)
+        walks = tuple((item, tuple(rows)) for item, rows in recorded)
         whole = (stage, tuple(spawners), tuple(robots), tuple(agents), walks)
         fixed = place_fixed(*whole)
         simple = not fixed[1] and _is_simple(whole[1])
@@ -127,16 +129,16 @@ class PlacementPlan:
         if self._geometry is None or not small:
             return None, np.zeros(len(seeds), dtype=np.bool_)
         keys = np.array(seeds, dtype=np.int64)
-        counts = [one.count for one in self.spawners]
+        counts = [spawner.count for spawner in self.spawners]
         people = sum(counts)
         radius, speed, heading = (np.empty((len(keys), people)) for _ in range(3))
         begin = 0
-        for k, one in enumerate(self.spawners):
-            own = slice(begin, begin + one.count)
-            radius[:, own] = _draw(one.radius, keys, ("spawner", k, "radius"), one.count)
-            speed[:, own] = _draw(one.speed, keys, ("spawner", k, "speed"), one.count)
-            heading[:, own] = _headings(one, seeds, k)
-            begin += one.count
+        for k, spawner in enumerate(self.spawners):
+            own = slice(begin, begin + spawner.count)
+            radius[:, own] = _draw(spawner.radius, keys, ("spawner", k, "radius"), spawner.count)
+            speed[:, own] = _draw(spawner.speed, keys, ("spawner", k, "speed"), spawner.count)
+            heading[:, own] = _headings(spawner, seeds, k)
+            begin += spawner.count
         position, goal = (np.empty((len(keys), people, 2)) for _ in range(2))
         decided = np.full(len(keys), not people)
         if people:
@@ -171,18 +173,18 @@ class PlacementPlan:
         """Return the people of spawners, with agents before and recorded people after them."""
         agents = self._fixed[2]
         last = [
-            recorded_people(walks, _draw(one.radius, seeds[:1], ("recorded", k, "radius"), len(walks))[0])
-            for k, (one, walks) in enumerate(self.recorded)
+            recorded_people(walks, _draw(item.radius, seeds[:1], ("recorded", k, "radius"), len(walks))[0])
+            for k, (item, walks) in enumerate(self.recorded)
         ]
         columns: dict[str, Any] = {}
         for name, value in zip(PeopleBatch._fields, drawn, strict=False):
-            parts = [getattr(agents, name), *(getattr(one, name) for one in last)]
+            parts = [getattr(agents, name), *(getattr(item, name) for item in last)]
             wide = [np.broadcast_to(part, (len(seeds), *part.shape)) for part in parts]
             columns[name] = np.concatenate([wide[0], value, *wide[1:]], axis=1)
         begin = len(self.agents) + drawn[0].shape[1]
-        for k, (one, walks) in enumerate(self.recorded):
+        for k, (item, walks) in enumerate(self.recorded):
             rows = columns["radius"][:, begin : begin + len(walks)]
-            rows[:] = _draw(one.radius, seeds, ("recorded", k, "radius"), len(walks))
+            rows[:] = _draw(item.radius, seeds, ("recorded", k, "radius"), len(walks))
             begin += len(walks)
         count = columns["radius"].shape[1] - len(agents)
         group = np.concatenate([agents.group, np.full(count, -1, dtype=np.int64)])
@@ -191,9 +193,11 @@ class PlacementPlan:
 
     def _first(self, columns: dict[str, Any]) -> InitialPeople:
         """Return the people of the first environment, with their owners."""
-        sizes = [1] * len(self.agents) + [one.count for one in self.spawners] + [len(w) for _, w in self.recorded]
+        sizes = (
+            [1] * len(self.agents) + [spawner.count for spawner in self.spawners] + [len(w) for _, w in self.recorded]
+        )
         owner = np.repeat(np.arange(len(sizes)), sizes)
-        owners: tuple[Any, ...] = (*self.agents, *self.spawners, *(one for one, _ in self.recorded))
+        owners: tuple[Any, ...] = (*self.agents, *self.spawners, *(item for item, _ in self.recorded))
         walks = tuple(walk for _, rows in self.recorded for walk in rows)
         rows = {name: column[0] for name, column in columns.items()}
         return InitialPeople(**rows, owner=owner, owners=owners, walks=walks)
@@ -201,10 +205,14 @@ class PlacementPlan:
 
 def _is_simple(spawners: Sequence[Spawner]) -> bool:
     """Return whether the kernel can place the people of these spawners."""
-    if any(one.layout != "zone" for one in spawners):
+    if any(spawner.layout != "zone" for spawner in spawners):
         return False
-    small = any(one.radius.extent[0] < SMALLEST for one in spawners)
-    return not small and not any(one.groups for one in spawners) and sum(one.count for one in spawners) <= MOST_PEOPLE
+    small = any(spawner.radius.extent[0] < SMALLEST for spawner in spawners)
+    return (
+        not small
+        and not any(spawner.groups for spawner in spawners)
+        and sum(spawner.count for spawner in spawners) <= MOST_PEOPLE
+    )
 
 
 def _geometry_of(stage: Stage, spawners: Sequence[Spawner], taken: OccupiedDiscs) -> PlacementGeometry:
@@ -212,13 +220,13 @@ def _geometry_of(stage: Stage, spawners: Sequence[Spawner], taken: OccupiedDiscs
     import shapely
 
     solids, ground = stage.shapes
-    rings = [one.coords for shape in solids for one in _lines(shape)]
+    rings = [line.coords for shape in solids for line in _lines(shape)]
     pairs = [np.concatenate([ring[:-1], ring[1:]], axis=1) for ring in map(np.asarray, rings)]
     edges = np.concatenate([np.zeros((0, 4)), *pairs])
     blocks = Polygons.of([shape for shape in solids if shape.geom_type == "Polygon"])
     grounds = Polygons.of([] if ground is None else list(shapely.get_parts(ground)))
-    zones = [area(one.zone) for one in spawners]
-    goals = [area(one.goal) if one.goal else shapely.Polygon() for one in spawners]
+    zones = [area(spawner.zone) for spawner in spawners]
+    goals = [area(spawner.goal) if spawner.goal else shapely.Polygon() for spawner in spawners]
     boxes = np.array([shape.bounds if not shape.is_empty else (0.0,) * 4 for shape in (*zones, *goals)])
     low = boxes.reshape(-1, 4)[:, :2].copy()
     size = boxes.reshape(-1, 4)[:, 2:] - low

@@ -44,8 +44,8 @@ def place(
     """
     taken, problems, first = place_fixed(stage, spawners, robots, agents, recorded, avatars)
     replayed = [
-        recorded_people(walks, one.radius.draw(stream(seed, "recorded", k, "radius"), len(walks)))
-        for k, (one, walks) in enumerate(recorded)
+        recorded_people(walks, item.radius.draw(stream(seed, "recorded", k, "radius"), len(walks)))
+        for k, (item, walks) in enumerate(recorded)
     ]
     groups, led, robot_goals = [first], _avatars(avatars), goal_discs(robots)
     for index, spawner in enumerate(spawners):
@@ -57,7 +57,7 @@ def place(
         if len(group) < spawner.count:
             problems.append((spawner, _too_many(spawner, len(group))))
     walks = tuple(walk for _, walks in recorded for walk in walks)
-    owners = (*agents, *spawners[: len(groups) - 1], *avatars, *(one for one, _ in recorded))
+    owners = (*agents, *spawners[: len(groups) - 1], *avatars, *(item for item, _ in recorded))
     sizes = [len(agents), *(1 for _ in groups[1:]), len(avatars), *(1 for _ in replayed)]
     return InitialPeople.concatenate([*groups, led, *replayed], sizes, owners, walks), problems
 
@@ -74,7 +74,7 @@ def place_fixed(
 
     They are the same for all seeds.
     """
-    widest = [s.radius.extent[1] for s in spawners] + [one.radius.extent[1] for one, _ in recorded]
+    widest = [s.radius.extent[1] for s in spawners] + [item.radius.extent[1] for item, _ in recorded]
     widest += [robot.radius for robot in robots] + [agent.radius for agent in agents]
     widest += [avatar.radius for avatar in avatars]
     taken = OccupiedDiscs(2.0 * max(widest, default=1.0))

@@ -48,7 +48,7 @@ def gap_to_robot(robot: RobotSpec, other: RobotSpec) -> float:
     first, second = start_outline(robot), start_outline(other)
     if first is None and second is None:
         return gap_to_disc(robot, other.position, other.radius)
-    table = Outlines.of({k: one for k, one in enumerate((first, second)) if one is not None}, 2)
+    table = Outlines.of({k: item for k, item in enumerate((first, second)) if item is not None}, 2)
     begin, middle, end = table.first.tolist()
     return float(
         body_gap(

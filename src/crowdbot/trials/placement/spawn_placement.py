@@ -65,8 +65,8 @@ class InitialPeople:
     @property
     def spawner(self) -> NDArray[np.int64]:
         """``[N]`` index of the spawner, below 0 without a spawner."""
-        first = sum(isinstance(one, Agent) for one in self.owners)
-        last = first + sum(isinstance(one, Spawner) for one in self.owners)
+        first = sum(isinstance(owner, Agent) for owner in self.owners)
+        last = first + sum(isinstance(owner, Spawner) for owner in self.owners)
         return np.where(self.owner < last, self.owner - first, -1)
 
     @classmethod

@@ -48,18 +48,18 @@ def joint_problems(targets: Sequence[JointTarget], robot: Robot) -> Iterator[str
     ["<joint>: the joint 'HeadYaw' of pepper cannot be at 9 rad; it moves from -2.08567 to 2.08567 rad"]
     """
     last: dict[str, JointTarget] = {}
-    for one in targets:
+    for target in targets:
         try:
-            check_joint(robot, one.name, one.target)
+            check_joint(robot, target.name, target.target)
         except InputError as error:
             yield f"<joint>: {error}"
-        before = last.get(one.name)
-        if before is not None and one.at < before.end:
+        before = last.get(target.name)
+        if before is not None and target.at < before.end:
             yield (
-                f'<joint>: the target of {one.name!r} at="{one.at:g}" begins before the one before ends at'
+                f'<joint>: the target of {target.name!r} at="{target.at:g}" begins before the one before ends at'
                 f" {before.end:g} s"
             )
-        last[one.name] = one
+        last[target.name] = target
 
 
 def joint_positions(
@@ -76,13 +76,13 @@ def joint_positions(
     >>> [joint_positions(rise, {}, k * 100_000_000, (k + 1) * 100_000_000) for k in (-1, 0, 1, 2, 3, 4)]
     [{}, {'a': 0.0}, {'a': 0.5}, {'a': 1.0}, {}, {'b': 3.0}]
     """
-    found: dict[str, float] = {}
+    result: dict[str, float] = {}
     start: dict[str, float] = {}
-    for one in targets:
-        begin, end = round(one.at * 1e9), round(one.end * 1e9)
-        first = start.get(one.name, float(posture.get(one.name, 0.0)))
-        start[one.name] = one.target
+    for target in targets:
+        begin, end = round(target.at * 1e9), round(target.end * 1e9)
+        first = start.get(target.name, float(posture.get(target.name, 0.0)))
+        start[target.name] = target.target
         if begin <= now and end > before:
             share = 1.0 if now >= end else (now - begin) / (end - begin)
-            found[one.name] = one.target if share == 1.0 else first + share * (one.target - first)
-    return found
+            result[target.name] = target.target if share == 1.0 else first + share * (target.target - first)
+    return result

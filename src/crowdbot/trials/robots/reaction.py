@@ -90,7 +90,7 @@ def robot_reactions(
         agents: number of agents of the world.
     """
     elements = [*owners, *sources]
-    reactions = [tuple(getattr(one, "reactions", ())) for one in elements]
+    reactions = [tuple(getattr(element, "reactions", ())) for element in elements]
     if not any(reactions):
         return None
     groups = [[(spec.reaction(), spec.share) for spec in rows] for rows in reactions if rows]

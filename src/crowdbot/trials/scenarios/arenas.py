@@ -32,7 +32,7 @@ RADIUS = PresetOption(7.0, "radius of the circle", "m", 4.0, 30.0)
 
 
 def _seen(robots: tuple[RobotSpec, ...]) -> tuple[RobotSpec, ...]:
-    return tuple(dataclasses.replace(one, visible=True) for one in robots)
+    return tuple(dataclasses.replace(item, visible=True) for item in robots)
 
 
 def delayed_circle(people: int, radius: float, delay: float) -> Trial:
@@ -40,18 +40,18 @@ def delayed_circle(people: int, radius: float, delay: float) -> Trial:
     plain = circle_crossing(people, radius, 0.35, 40.0, 5.0)
     sources = [
         SourceSpec(
-            name=one.name,
-            zone=one.zone,
-            goal=one.goal,
+            name=spawner.name,
+            zone=spawner.zone,
+            goal=spawner.goal,
             rate=1.0,
             timing="regular",
             begin=round(delay * (k * GOLDEN % 1.0), 1),
             max_count=1,
-            speed=one.speed,
-            radius=one.radius,
+            speed=spawner.speed,
+            radius=spawner.radius,
             arrival="stay",
         )
-        for k, one in enumerate(plain.spawners)
+        for k, spawner in enumerate(plain.spawners)
     ]
     return dataclasses.replace(plain, spawners=(), sources=tuple(sources), robots=_seen(plain.robots))
 
@@ -172,7 +172,7 @@ def crowd_against_crowd(people: int, angle: float, formation: bool) -> Trial:
     ways = {"first": 0.0, "second": turn}
     x, y = -away * math.cos(turn / 2.0), -away * math.sin(turn / 2.0)
     crowds = [] if formation else [_crowd(name, people, away, way, 1.3) for name, way in ways.items()]
-    ranks = [one for name, way in ways.items() for one in _formation(name, people, away, way)] if formation else []
+    ranks = [item for name, way in ways.items() for item in _formation(name, people, away, way)] if formation else []
     return scenario(
         "crowd-against-crowd",
         60.0,

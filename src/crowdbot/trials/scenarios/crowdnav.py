@@ -113,7 +113,7 @@ def attention_ladder(attention: float, people: int, limit: float) -> Trial:
     """Return a circle of which a share of people sees the robot."""
     trial = _crossing("circle", 10, people, True, limit, 4.0, 0.5)
     blind = (ReactionSpec(type="ignore", share=1.0 - attention),) if attention < 1.0 else ()
-    spawners = [dataclasses.replace(one, reactions=blind) for one in trial.spawners]
+    spawners = [dataclasses.replace(spawner, reactions=blind) for spawner in trial.spawners]
     return dataclasses.replace(trial, name="attention-ladder", spawners=tuple(spawners))
 
 

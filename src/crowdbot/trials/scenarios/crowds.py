@@ -56,7 +56,7 @@ def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: flo
     y = width / 2.0 - 0.25
     zone = box(-HALF + 0.5, -y, HALF - 0.5, y)
     people = [flow(way, _count(density, LENGTH, width), zone, way) for way, density in flows.items()]
-    people = [Spawner(**_fields(one), groups=pairs(groups)) for one in people if one.count]
+    people = [Spawner(**_fields(person), groups=pairs(groups)) for person in people if person.count]
     return scenario(
         name,
         90.0,
@@ -69,8 +69,8 @@ def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: flo
     )
 
 
-def _fields(one: Spawner) -> dict[str, Any]:
-    return {"name": one.name, "count": one.count, "zone": one.zone, "journey": one.journey}
+def _fields(spawner: Spawner) -> dict[str, Any]:
+    return {"name": spawner.name, "count": spawner.count, "zone": spawner.zone, "journey": spawner.journey}
 
 
 def one_way_with(density: float, width: float, groups: float) -> Trial:
@@ -185,7 +185,7 @@ def square_crossing(people: int, side: float) -> Trial:
         "square-crossing",
         30.0,
         Stage(),
-        spawners=[one for one in spawners if one.count],
+        spawners=[spawner for spawner in spawners if spawner.count],
         robots=[robot((0.0, -h), (0.0, h))],
     )
 

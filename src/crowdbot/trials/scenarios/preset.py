@@ -140,8 +140,9 @@ def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any]
     robots: Iterable[RobotSpec] = trial.robots if values["robot"] else ()
     found = find_class(values["navigator"], navigation, navigation.Navigator, folder=folder, trust=False)
     robots = [
-        one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots
+        robot if isinstance(robot.navigator, found) else dataclasses.replace(robot, navigator=found())
+        for robot in robots
     ]
     if not values["reactive"]:
-        robots = [dataclasses.replace(one, visible=False) for one in robots]
+        robots = [dataclasses.replace(robot, visible=False) for robot in robots]
     return dataclasses.replace(trial, **changes, robots=tuple(robots))

@@ -43,17 +43,17 @@ def names(checked: ValidationContext) -> Iterator[Problems]:
     yield duplicate_names(trial.journeys, "journey")
     yield from (_endless_stops(journey.stops) for journey in trial.journeys)
     yield _more_than_fit(trial)
-    journeys, crowds = ([one.name for one in ones if one.name] for ones in (trial.journeys, checked.crowds))
-    for one in checked.people:
-        yield _goals(one)
-        yield _arrival(one)
-        yield _unknown_name(one, "journey", journeys)
-        yield _unknown_name(one, "crowd", crowds)
-        if isinstance(one, SourceSpec):
-            yield _arrival_times(one)
-        if isinstance(one, Agent):
-            yield from (_parameter(checked, one, parameter) for parameter in one.parameters)
-    yield from (_unknown_name(one, "crowd", crowds) for one in trial.recorded)
+    journeys, crowds = ([item.name for item in ones if item.name] for ones in (trial.journeys, checked.crowds))
+    for person in checked.people:
+        yield _goals(person)
+        yield _arrival(person)
+        yield _unknown_name(person, "journey", journeys)
+        yield _unknown_name(person, "crowd", crowds)
+        if isinstance(person, SourceSpec):
+            yield _arrival_times(person)
+        if isinstance(person, Agent):
+            yield from (_parameter(checked, person, parameter) for parameter in person.parameters)
+    yield from (_unknown_name(item, "crowd", crowds) for item in trial.recorded)
 
 
 def duplicate_names(things: Sequence[Any], others: str) -> Problems:
@@ -74,9 +74,9 @@ def flows(checked: ValidationContext) -> Iterator[Problems]:
     yield from (_entrance(trial.stage, source) for source in trial.sources)
     yield from (_stop(checked, stop) for journey in trial.journeys for stop in journey.stops)
     coming: tuple[Spawner | SourceSpec, ...] = (*trial.spawners, *trial.sources)
-    yield from (_exit_overlap(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
+    yield from (_exit_overlap(item, k, way) for item in coming for k, way in enumerate(trial.exits, 1))
     yield from (_portal_loop(*pair) for pair in itertools.combinations(trial.portals, 2))
-    yield from (_first_leg(checked, one) for one in checked.people)
+    yield from (_first_leg(checked, person) for person in checked.people)
     for journey in trial.journeys:
         yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(journey.stops), 2))
 

@@ -75,7 +75,7 @@ def model_range(model: CrowdModel) -> ModelRange | None:
         return model_range(model.model)
     name = kebab_case(type(model).__name__)
     here = type(model).__module__.startswith("crowdbot.models.")
-    return next((one for one in MODEL_RANGES if here and one.model == name), None)
+    return next((item for item in MODEL_RANGES if here and item.model == name), None)
 
 
 def range_remarks(trial: Trial) -> list[str]:
@@ -88,21 +88,21 @@ def range_remarks(trial: Trial) -> list[str]:
     []
     """
     models = trial.crowd.models if isinstance(trial.crowd, Crowds) else (trial.crowd,)
-    ranges = {one.model: one for one in map(model_range, models) if one is not None}
+    ranges = {item.model: item for item in map(model_range, models) if item is not None}
     density, step = start_density(trial), trial.step / trial.substeps
-    found = []
-    for one in ranges.values():
-        if density > one.max_density:
-            found.append(
-                f"crowd model {one.model} is used at {density:.2g} people/m2, beyond its range of {one.max_density:g}:"
-                f" {one.why} ({one.density_source})"
+    result = []
+    for range_ in ranges.values():
+        if density > range_.max_density:
+            result.append(
+                f"crowd model {range_.model} is used at {density:.2g} people/m2, beyond its range of {range_.max_density:g}:"
+                f" {range_.why} ({range_.density_source})"
             )
-        if step > one.max_step + STEP_TOLERANCE:
-            found.append(
-                f"crowd model {one.model} is used with a time step of {step:g} s, beyond its range of"
-                f' {one.max_step:g} s ({one.step_source}); write substeps="{_substeps(trial, one)}"'
+        if step > range_.max_step + STEP_TOLERANCE:
+            result.append(
+                f"crowd model {range_.model} is used with a time step of {step:g} s, beyond its range of"
+                f' {range_.max_step:g} s ({range_.step_source}); write substeps="{_substeps(trial, range_)}"'
             )
-    return found
+    return result
 
 
 def start_density(trial: Trial) -> float:

@@ -74,7 +74,7 @@ def trial_remarks(trial: Trial) -> list[str]:
                 f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
                 f" {trial.step:g} s: {words}{exact}"
             )
-    recorded = [sentence for one in trial.recorded for sentence in one.remarks()]
+    recorded = [sentence for item in trial.recorded for sentence in item.remarks()]
     robots, rest = _weak_motors(trial), (*ground_remarks(trial), *camera_remarks(trial))
     return [*stage_size_remarks(trial), *found, *recorded, *robots, *rest]
 

@@ -128,16 +128,16 @@ def problems_of(trial: Trial, seed: int | None = None) -> list[tuple[Any, str]]:
             *ground_problems(checked),
             *_size(trial),
         ),
-        *((one.element, wrong) for one in zones if (wrong := one.shape_problem())),
+        *((zone.element, wrong) for zone in zones if (wrong := zone.shape_problem())),
         *_stage_shapes(trial.stage),
     ]
     found = found or [
-        *((one.element, wrong) for one in zones if (wrong := one.place_problem(trial.stage))),
+        *((zone.element, wrong) for zone in zones if (wrong := zone.place_problem(trial.stage))),
         *skip_unreadable(
             inaccessible_stops(trial),
             *_robots(trial.stage, trial.robots),
-            *(_recording(trial, one) for one in trial.recorded),
-            *(_avatar(one) for one in trial.avatars),
+            *(_recording(trial, item) for item in trial.recorded),
+            *(_avatar(avatar) for avatar in trial.avatars),
             *(start_problem(robot) for robot in trial.robots),
         ),
     ]
@@ -152,27 +152,30 @@ def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
         with contextlib.suppress(UnreadableValue):
             avatar.start_pose()
             avatars.append(avatar)
-    walks = [(one, one.walks(trial.duration)) for one in trial.recorded]
+    walks = [(item, item.walks(trial.duration)) for item in trial.recorded]
     return place(trial.stage, trial.spawners, trial.robots, checked.seed, trial.agents, walks, avatars)[1]
 
 
-def _recording(trial: Trial, one: RecordedPeople) -> Problems:
+def _recording(trial: Trial, recorded_people: RecordedPeople) -> Problems:
     """Yield why a recording cannot be replayed."""
     try:
-        walks = one.walks(trial.duration)
+        walks = recorded_people.walks(trial.duration)
     except InputError as error:
-        yield one, f"data={quote_value(one.data)} {error}"
+        yield recorded_people, f"data={quote_value(recorded_people.data)} {error}"
         return
     if not walks:
-        yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
+        yield (
+            recorded_people,
+            f"data={quote_value(recorded_people.data)} contains nobody after {recorded_people.begin:g} s; use an earlier begin",
+        )
 
 
-def _avatar(one: Avatar) -> Problems:
+def _avatar(avatar: Avatar) -> Problems:
     """Yield why the source of an avatar gives no pose."""
     try:
-        one.start_pose()
+        avatar.start_pose()
     except InputError as error:
-        yield one, f"{one.source}={quote_value(getattr(one, one.source))} {error}"
+        yield avatar, f"{avatar.source}={quote_value(getattr(avatar, avatar.source))} {error}"
 
 
 def _periods(checked: ValidationContext) -> Problems:

@@ -172,7 +172,7 @@ class XmlReader:
             return made[0] if made else None
         if part.into is None:
             return tuple(made) if made or not part.required else None
-        if not made or any(one is None for one in made):
+        if not made or any(item is None for item in made):
             return None
         problems = list(part.into.problems(made))
         for k, sentence in problems:

@@ -50,7 +50,7 @@ class ReaderResult:
     @property
     def sentences(self) -> list[str]:
         """A sentence for every problem, without the line."""
-        return [f"<{one.tag}> {one.sentence}" for one in self.problems]
+        return [f"<{problem.tag}> {problem.sentence}" for problem in self.problems]
 
     def raise_problems(self) -> None:
         """Raise :class:`TrialError` with every problem in the order of the lines; return if there is none."""

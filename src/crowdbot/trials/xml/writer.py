@@ -52,7 +52,7 @@ def element_from(tag: str, thing: Any, folder: Path | None) -> Element:
     for part in outline(cls):
         value = getattr(thing, part.name)
         if part.role == "children" and part.name in usual:
-            value = tuple(one for one in value if one not in usual[part.name])
+            value = tuple(item for item in value if item not in usual[part.name])
         if not part.required and value == usual.get(part.name, part.default):
             continue
         _add(element, part, value, folder)
@@ -64,7 +64,7 @@ def _add(element: Element, part: FieldSpec, value: Any, folder: Path | None) -> 
         element.attributes[part.word] = _text(value, part.word)
     elif part.role in ("child", "children"):
         ones = part.into.spread(value) if part.into else (value if part.role == "children" else (value,))
-        element.children += [element_from(_word(part, one), one, folder) for one in ones]
+        element.children += [element_from(_word(part, item), item, folder) for item in ones]
     elif part.role == "plugged":
         element.children.append(Element(part.word, _plug(part, value, folder)))
     else:
@@ -136,7 +136,7 @@ def _text(value: Any, what: str) -> str:
     if hasattr(type(value), "parse"):
         return str(value)
     if isinstance(value, tuple) and not any(map(_is_default_part, value)):
-        return " ".join(_text(one, what) for one in value)
+        return " ".join(_text(item, what) for item in value)
     if _is_default_part(value):
         return kebab_case(type(value).__name__)
     raise InputError(f"{what} = {str(value)[:60]!r} cannot be written as an attribute of a trial file")

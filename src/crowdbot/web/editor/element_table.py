@@ -57,7 +57,10 @@ def _add_plugin(plug: Any, table: dict[str, Any]) -> str:
 def _types(plug: Any) -> dict[str, Any]:
     room, contract = plug.places()
     return {
-        name: {"about": _first_line(cls), "attributes": [_field(one) for one in dataclasses.fields(cls) if one.init]}
+        name: {
+            "about": _first_line(cls),
+            "attributes": [_field(field) for field in dataclasses.fields(cls) if field.init],
+        }
         for name, cls in builtin_classes(room, contract).items()
     }
 

@@ -69,7 +69,7 @@ class EvaluationDesk(Desk):
         titles = trial_titles()
         return {
             "trials": [{"name": name, "about": titles[name]} for name in builtin_trials()],
-            "files": [one for one in self.session.workspace.trials() if not one.startswith(FOLDER)],
+            "files": [trial for trial in self.session.workspace.trials() if not trial.startswith(FOLDER)],
             "navigators": list(builtin_classes(room, room.Navigator)),
             "robots": self._known_robots(),
             "metrics": list(METRICS),
@@ -146,11 +146,11 @@ class EvaluationDesk(Desk):
             "command": request.command(folder) if request else shlex.join(made),
             "python": request.python(folder) if request else "",
             "statistics": list(names),
-            "titles": [parse_statistic(one, result.metrics).title for one in names],
+            "titles": [parse_statistic(name, result.metrics).title for name in names],
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
             "robots": list(request.lines) if request else [],
             "remarks": remark_lines(result.cells),
-            "comparisons": [_sentence(one) for one in result.compare() if not math.isnan(one.p_value)],
+            "comparisons": [_sentence(item) for item in result.compare() if not math.isnan(item.p_value)],
             "report": (self._folder(name) / "report.html").is_file(),
         }
 
@@ -188,8 +188,8 @@ class EvaluationDesk(Desk):
 
     def _known_robots(self) -> list[str]:
         """Return the robot folders of the session by their names from its folder, and the built-in robots."""
-        files = (Path(one).parent.as_posix() for one in self.session.workspace.files("robot.xml"))
-        folders = (one for one in files if one != "." and not one.startswith(f"{FOLDER}/"))
+        files = (Path(file).parent.as_posix() for file in self.session.workspace.files("robot.xml"))
+        folders = (file for file in files if file != "." and not file.startswith(f"{FOLDER}/"))
         return [*dict.fromkeys([*folders, *builtin_robots()])]
 
     def _folder(self, name: str) -> Path:
@@ -227,10 +227,10 @@ class EvaluationDesk(Desk):
 
     def _state(self) -> dict[str, Any]:
         root = self.session.workspace.folder / FOLDER
-        folders = sorted(one for one in root.glob("*") if one.is_dir()) if root.is_dir() else []
+        folders = sorted(item for item in root.glob("*") if item.is_dir()) if root.is_dir() else []
         job = self._job
         return {
-            "evaluations": [{"name": one.name, "done": (one / RESULT).is_file()} for one in folders],
+            "evaluations": [{"name": folder.name, "done": (folder / RESULT).is_file()} for folder in folders],
             "running": job.record.title if job else "",
             "share": job.record.share if job else 0.0,
             "problem": self._problem,
@@ -247,20 +247,20 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
         "named": cell.robot,
         "visible": cell.protocol.get("visible", True),
         "senses": cell.protocol.get("senses") or ["nothing"],
-        "estimates": [str(cell.estimate(one)) for one in statistics],
+        "estimates": [str(cell.estimate(statistic)) for statistic in statistics],
         "runs": [
             {
                 "seed": row.seed,
                 "outcome": row.outcome,
                 "message": row.message,
-                "values": [plain_number(row.metrics.get(one.metric)) for one in statistics],
+                "values": [plain_number(row.metrics.get(statistic.metric)) for statistic in statistics],
             }
             for row in cell.runs
         ],
     }
 
 
-def _sentence(one: PairedComparison) -> str:
-    where = ", ".join(filter(None, (one.trial, one.robot)))
-    what = f"{where}, {one.metric}: {one.second} minus {one.first} = {one.difference}"
-    return f"{what}, p = {one.corrected:.3g} (corrected)"
+def _sentence(paired_comparison: PairedComparison) -> str:
+    where = ", ".join(filter(None, (paired_comparison.trial, paired_comparison.robot)))
+    what = f"{where}, {paired_comparison.metric}: {paired_comparison.second} minus {paired_comparison.first} = {paired_comparison.difference}"
+    return f"{what}, p = {paired_comparison.corrected:.3g} (corrected)"

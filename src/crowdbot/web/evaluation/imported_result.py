@@ -67,7 +67,7 @@ def cell_of_result(cell: CellResult, space: Workspace) -> EvaluationCell:
     if name in builtin_trials():
         trial = load_builtin_trial(name, folder=space.folder)
     else:
-        files = [one for one in space.trials() if Path(one).stem == name]
+        files = [trial for trial in space.trials() if Path(trial).stem == name]
         if not files:
             raise InputError(
                 f"trial {name!r} of this result is not in the folder of the app; open its file there first"

@@ -18,7 +18,7 @@ def question_form(question: Choice | Scale | Number | FreeText) -> dict[str, Any
     match question:
         case Choice():
             row |= {"kind": "choice", "multiple": question.multiple}
-            row["options"] = [{"value": one.value, "text": one.label} for one in question.options]
+            row["options"] = [{"value": option.value, "text": option.label} for option in question.options]
         case Scale():
             row |= {"kind": "scale", "steps": list(range(question.low, question.high + 1))}
             row |= {"low": question.low_text, "high": question.high_text}

@@ -75,4 +75,4 @@ class SessionStreams:
 
 def chosen_streams(send: bool, record: Sequence[str]) -> StreamChoice:
     """Return a choice; empty names are left out."""
-    return StreamChoice(bool(send), tuple(one.strip() for one in map(str, record) if one.strip()))
+    return StreamChoice(bool(send), tuple(item.strip() for item in map(str, record) if item.strip()))

@@ -65,18 +65,18 @@ class JobBoard:
     @property
     def active(self) -> bool:
         """Whether a job waits or runs."""
-        return any(one.active for one in self.records)
+        return any(record.active for record in self.records)
 
     @property
     def cpu(self) -> float:
         """Processor time of all jobs [s]."""
-        return sum(one.cpu for one in self.records)
+        return sum(record.cpu for record in self.records)
 
     def facts(self) -> dict[str, Any]:
         """Return the jobs, newest first, and what the session uses, as JSON."""
         own = self.limits
         return {
-            "jobs": [one.values for one in reversed(self.records)],
+            "jobs": [record.values for record in reversed(self.records)],
             "cpu": self.cpu,
             "cpu_limit": None if math.isinf(own.cpu) else own.cpu,
             "disk": self.workspace.size(),
@@ -180,7 +180,7 @@ class JobBoard:
             job.cancel()
 
     def _check_limits(self) -> None:
-        waiting = sum(one.state == WAITING for one in self._records.values())
+        waiting = sum(record.state == WAITING for record in self._records.values())
         if waiting >= self.limits.waiting:
             raise InputError(f"{waiting} jobs are waiting, the limit of a session; wait, or cancel one of them")
         if self.cpu >= self.limits.cpu:
@@ -190,7 +190,7 @@ class JobBoard:
     def _advance(self) -> None:
         """Start jobs that wait while the limit allows it; the lock is held."""
         for number, record in sorted(self._records.items()):
-            running = sum(one.state == RUNNING for one in self._records.values())
+            running = sum(record.state == RUNNING for record in self._records.values())
             if record.state != WAITING or running >= self.limits.jobs:
                 continue
             left = self.limits.cpu - self.cpu
@@ -235,7 +235,7 @@ class JobBoard:
 
     def _forget(self) -> None:
         """Drop the oldest jobs that have ended beyond the longest list."""
-        ended = [number for number, one in sorted(self._records.items()) if not one.active]
+        ended = [number for number, item in sorted(self._records.items()) if not item.active]
         for number in ended[: max(0, len(self._records) - MOST_RECORDS)]:
             del self._records[number]
             self._log(number).unlink(missing_ok=True)
@@ -249,12 +249,14 @@ class JobBoard:
         with contextlib.suppress(OSError):  # a full disk must not stop the jobs
             self._folder.mkdir(exist_ok=True)
             draft = self._folder / f"{LIST}.part"
-            draft.write_text(json.dumps([one.values for one in self._records.values()], indent=1), encoding="utf-8")
+            draft.write_text(
+                json.dumps([record.values for record in self._records.values()], indent=1), encoding="utf-8"
+            )
             draft.replace(self._folder / LIST)
 
     def _load(self) -> dict[int, JobRecord]:
         try:
             rows = json.loads((self._folder / LIST).read_text(encoding="utf-8"))
-            return {one.number: one for one in map(JobRecord.load, rows)}
+            return {item.number: item for item in map(JobRecord.load, rows)}
         except (OSError, ValueError, TypeError):  # none yet, or a damaged list
             return {}

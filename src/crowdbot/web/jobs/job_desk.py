@@ -40,8 +40,8 @@ class JobDesk(Desk):
         """Return the kinds of jobs with their forms."""
         space = self.session.workspace
         return [
-            {"kind": kind, "title": one.title, "about": one.about, "rows": one.rows(space)}
-            for kind, one in FORMS.items()
+            {"kind": kind, "title": item.title, "about": item.about, "rows": item.rows(space)}
+            for kind, item in FORMS.items()
         ]
 
     @command
@@ -88,7 +88,9 @@ class JobDesk(Desk):
     def files(self, number: int) -> list[dict[str, Any]]:
         """Return the files of the results of a job."""
         folder = self._results(number)
-        found = [one for one in sorted(folder.rglob("*")) if one.is_file() and "parts" not in one.parts][:MOST_FILES]
+        found = [item for item in sorted(folder.rglob("*")) if item.is_file() and "parts" not in item.parts][
+            :MOST_FILES
+        ]
         return [{"name": one.relative_to(folder).as_posix(), "bytes": one.stat().st_size} for one in found]
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
@@ -125,11 +127,11 @@ class JobDesk(Desk):
 
 
 def _packed(folder: Path) -> bytes:
-    files = [one for one in sorted(folder.rglob("*")) if one.is_file()]
-    if sum(one.stat().st_size for one in files) > MOST_ZIP:
+    files = [item for item in sorted(folder.rglob("*")) if item.is_file()]
+    if sum(file.stat().st_size for file in files) > MOST_ZIP:
         raise InputError(f"the results are larger than {MOST_ZIP / 1e6:.0f} MB; take the files one by one")
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for one in files:
-            archive.write(one, one.relative_to(folder))
+        for file in files:
+            archive.write(file, file.relative_to(folder))
     return buffer.getvalue()

@@ -54,7 +54,7 @@ def check_text(text: str, what: str) -> str:
     Raises:
         InputError: it names a file elsewhere, or is too long.
     """
-    if len(text) > 1000 or any(ord(one) < 32 for one in text):
+    if len(text) > 1000 or any(ord(item) < 32 for item in text):
         raise InputError(f"{what} = {text!r:.60}: expected at most 1000 characters in one line")
     for piece in re.split(r"[\s,;=:]+", text):
         if piece.startswith(("/", "~", "\\")) or ".." in piece.replace("\\", "/").split("/"):
@@ -100,10 +100,10 @@ def _read(row: Row, value: Any) -> Any:
         return value
     if kind == "text" and isinstance(value, str):
         return check_text(value.strip(), name) if row.get("names_files", True) else value.strip()
-    choices = [one[0] if isinstance(one, list | tuple) else one for one in row.get("choices", ())]
+    choices = [item[0] if isinstance(item, list | tuple) else item for item in row.get("choices", ())]
     if kind == "choice" and value in choices:
         return value
-    if kind == "several" and isinstance(value, list) and all(one in choices for one in value):
+    if kind == "several" and isinstance(value, list) and all(item in choices for item in value):
         if not value:
             raise InputError(f"{name}: choose at least one")
         return value
@@ -111,19 +111,19 @@ def _read(row: Row, value: Any) -> Any:
 
 
 def _trials(space: Workspace) -> list[str]:
-    files = [one for one in space.trials() if not one.startswith(("sessions/", "evaluations/"))]
+    files = [trial for trial in space.trials() if not trial.startswith(("sessions/", "evaluations/"))]
     return [*files, *builtin_trials()]
 
 
 def _recordings(space: Workspace) -> list[tuple[str, str]]:
     skipped = ("sessions/", "examples/", "trainings/", "evaluations/", "generated/")
-    names = [one for one in space.files() if one.endswith(RECORDINGS) and not one.startswith(skipped)]
-    held = Counter(PurePosixPath(one).parent.as_posix() for one in names)
+    names = [file for file in space.files() if file.endswith(RECORDINGS) and not file.startswith(skipped)]
+    held = Counter(PurePosixPath(name).parent.as_posix() for name in names)
     folders = [
-        (one, f"{one}/ ({count} files as one recording)") for one, count in held.items() if one != "." and count > 1
+        (item, f"{item}/ ({count} files as one recording)") for item, count in held.items() if item != "." and count > 1
     ]
-    examples = [(f"example:{one}", f"{one} (example)") for one in EXAMPLES]
-    return [*((one, one) for one in names), *folders, *examples]
+    examples = [(f"example:{item}", f"{item} (example)") for item in EXAMPLES]
+    return [*((name, name) for name in names), *folders, *examples]
 
 
 def _paths(space: Workspace, names: list[str]) -> list[str]:
@@ -271,7 +271,7 @@ def _falsify_rows(space: Workspace) -> list[Row]:
 
 
 def _falsify_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
-    over = [f"--over={one.strip()}" for one in values["over"].split(";") if one.strip()]
+    over = [f"--over={item.strip()}" for item in values["over"].split(";") if item.strip()]
     plain = [f"--{name}={values[name]}" for name in ("navigator", "robots", "failure", "search") if values[name]]
     return ["falsify", values["trial"], *plain, *over, *_numbers(values, "runs", "seed")]
 

@@ -147,7 +147,7 @@ def _descendants(pid: int) -> list[int]:
         with contextlib.suppress(OSError):
             for task in PROC.joinpath(str(front.pop()), "task").iterdir():
                 with contextlib.suppress(OSError):
-                    children = [int(one) for one in task.joinpath("children").read_text(encoding="ascii").split()]
+                    children = [int(item) for item in task.joinpath("children").read_text(encoding="ascii").split()]
                     found += children
                     front += children
     return found

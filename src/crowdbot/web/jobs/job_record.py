@@ -65,11 +65,11 @@ class JobRecord:
         Raises:
             TypeError: the values are not those of a record.
         """
-        hints = {one.name: str(one.type) for one in dataclasses.fields(cls)}
+        hints = {item.name: str(item.type) for item in dataclasses.fields(cls)}
         kinds = {"int": int, "str": str, "float": int | float, "list[str]": list}
         if set(values) != set(hints) or not all(isinstance(values[name], kinds[hints[name]]) for name in hints):
             raise TypeError("not a record of a job")
-        found = cls(**values)
-        if found.active:
-            found.state, found.problem = INTERRUPTED, "the server ended while the job was running"
-        return found
+        job_record = cls(**values)
+        if job_record.active:
+            job_record.state, job_record.problem = INTERRUPTED, "the server ended while the job was running"
+        return job_record

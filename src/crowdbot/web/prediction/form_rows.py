@@ -75,7 +75,7 @@ def written_values(cls: type, values: Mapping[str, Any], what: str) -> dict[str,
         InputError: a name is not a row of the form, or a value is not of its kind.
     """
     rows = {row["name"]: row for row in form_rows(cls)}
-    found = {}
+    result = {}
     for name, value in values.items():
         if name not in rows:
             raise InputError(f"{what} has no parameter {name!r}{did_you_mean(name, rows)}; it has {', '.join(rows)}")
@@ -86,15 +86,15 @@ def written_values(cls: type, values: Mapping[str, Any], what: str) -> dict[str,
             raise InputError(f"{what}: {name} = {value!r} is unknown; known are {', '.join(row['choices'])}")
         if isinstance(value, bool) != (row["kind"] == "switch") or not isinstance(value, bool | int | float | str):
             raise InputError(f"{what}: {name} = {value!r:.60} is not a value of this parameter")
-        found[name] = str(value).lower() if isinstance(value, bool) else str(value)
-    return found
+        result[name] = str(value).lower() if isinstance(value, bool) else str(value)
+    return result
 
 
 def scheme_tables() -> dict[str, Any]:
     """Return all lists of the dialogs, as `crowdbot list` shows them, with a form for each entry."""
     lists = {kind: _listing(kind) for kind in ("models", "goals", "costs", "searches", "predictors", "degradations")}
     crowd = [row for row in form_rows(prediction.Simulated) if row["name"] in ("radius", "substep")]
-    sampled = {name for name, one in builtin_kinds("predictors").items() if _draws(one)}
+    sampled = {name for name, kind in builtin_kinds("predictors").items() if _draws(kind)}
     for row in lists["predictors"]:
         row["samples"] = row["name"] in sampled
         row["weights"] = row["name"] in prediction.WEIGHTS_FIELDS
@@ -118,9 +118,9 @@ def _listing(kind: str) -> list[dict[str, Any]]:
 
     about = builtin_names(kind)[kind]
     rows = []
-    for name, one in builtin_kinds(kind).items():
-        row = {"name": name, "about": about[name], "parameters": form_rows(one) if kind != "goals" else []}
-        if kind == "goals" and one.learns:  # type: ignore[attr-defined]
+    for name, item in builtin_kinds(kind).items():
+        row = {"name": name, "about": about[name], "parameters": form_rows(item) if kind != "goals" else []}
+        if kind == "goals" and item.learns:  # type: ignore[attr-defined]
             row["about"] = f"{about[name]} ({LEARN})"
         rows.append(row)
     return rows

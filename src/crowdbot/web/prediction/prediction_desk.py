@@ -85,10 +85,10 @@ class PredictionDesk(Desk):
     def files(self) -> dict[str, Any]:
         """Return the files of the session, newest first, and the examples."""
         space = self.session.workspace
-        names = [one for one in space.files() if not one.startswith(("sessions/", "examples/"))]
+        names = [file for file in space.files() if not file.startswith(("sessions/", "examples/"))]
         facts = [(space.folder / name).stat() for name in names]
         newest = sorted(zip(names, facts, strict=True), key=lambda pair: -pair[1].st_mtime)
-        rows = [{"name": name, "bytes": one.st_size, "changed": one.st_mtime} for name, one in newest]
+        rows = [{"name": name, "bytes": item.st_size, "changed": item.st_mtime} for name, item in newest]
         return {"files": rows[:RECENT], "examples": [{"name": n, "about": a} for n, a in EXAMPLES.items()]}
 
     @command
@@ -184,8 +184,8 @@ class PredictionDesk(Desk):
     @command
     def log(self) -> list[Any]:
         """Return the lines of the log of all predictors."""
-        pairs = [(m, name, one) for m in self.board.members for name, one in m.results.items()]
-        return [{"key": m.key, "input": name, "lines": one.log()} for m, name, one in pairs]
+        pairs = [(m, name, result) for m in self.board.members for name, result in m.results.items()]
+        return [{"key": m.key, "input": name, "lines": item.log()} for m, name, item in pairs]
 
     @command
     def variables(self) -> list[Any]:
@@ -213,9 +213,9 @@ class PredictionDesk(Desk):
         place = past.position[index, :, slot][past.present[index, :, slot]]
         speed = float(((place[-1] - place[-2]) ** 2).sum() ** 0.5 / dt) if len(place) > 1 else None
         found = [
-            {"key": m.key, "slot": m.slot, "label": m.label, "input": name, **one.person(index, id)}
+            {"key": m.key, "slot": m.slot, "label": m.label, "input": name, **result.person(index, id)}
             for m in self.board.members
-            for name, one in m.results.items()
+            for name, result in m.results.items()
         ]
         own = {"id": id, "robot": bool(past.robot[index, slot]), "scored": bool(future.scored[index, slot])}
         return {**own, "place": place[-1].tolist(), "speed": speed, "rows": len(place), "results": found}
@@ -224,13 +224,13 @@ class PredictionDesk(Desk):
     def command_line(self, degraded: bool = False) -> str:
         """Return the commands that give the numbers on the screen, one for each predictor."""
         choice = self.board.degradation if degraded else None
-        return "\n".join(self._setup.command(one.choice, choice) for one in self._members())
+        return "\n".join(self._setup.command(member.choice, choice) for member in self._members())
 
     @command
     def python(self, degraded: bool = False) -> str:
         """Return a Python program that gives the numbers on the screen."""
         choice = self.board.degradation if degraded else None
-        return self._setup.python([one.choice for one in self._members()], choice)
+        return self._setup.python([member.choice for member in self._members()], choice)
 
     @command
     def calibrate_line(self, key: str) -> str:
@@ -271,9 +271,9 @@ class PredictionDesk(Desk):
 
         setup, members = self._setup, self._members()
         frame = int(self.board.windows()[0].frame[self.board.index(_whole(query, "index")), -1])
-        samples = max(one.choice.samples for one in members)
+        samples = max(member.choice.samples for member in members)
         evaluation = PredictorEvaluation(
-            (setup.recording,), tuple(one.spec for one in members), samples, setup.best_of, setup.seed
+            (setup.recording,), tuple(member.spec for member in members), samples, setup.best_of, setup.seed
         )
         with tempfile.TemporaryDirectory() as folder:
             data = animate_window(evaluation, frame, Path(folder) / path).read_bytes()
@@ -297,7 +297,7 @@ class PredictionDesk(Desk):
     def _start(self) -> None:
         task, results = self._queue.pop(0)
         self._share = 0.0
-        names = ", ".join(one.label for one in self.board.members)
+        names = ", ".join(member.label for member in self.board.members)
         degraded = f" after {task.degradation}" if task.degradation is not None else ""
         title = f"{self.board.recording.name}{degraded}: {names}"
         self._run = PredictionRun(self.session.jobs, task, results, self._note, title)
@@ -330,7 +330,7 @@ class PredictionDesk(Desk):
         if (recording := facts["recording"]) is not None:
             own = {"file": recording["path"], "options": recording["options"]}
             own |= {"seed": recording["seed"], "live": recording["live"], "degradation": facts["degradation"]}
-            self._draft.save({**own, "predictors": [one.choice.settings for one in self.board.members]})
+            self._draft.save({**own, "predictors": [member.choice.settings for member in self.board.members]})
         self.session.tell("prediction.board", facts)
         return facts
 

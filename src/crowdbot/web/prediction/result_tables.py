@@ -30,7 +30,7 @@ def variable_rows(board: PredictionBoard, variable: str, person: int | None) -> 
     Raises:
         InputError: there is no such variable.
     """
-    known = {one["name"]: one for one in variable_names(board)}
+    known = {name["name"]: name for name in variable_names(board)}
     if variable not in known:
         raise InputError(f"variable {variable!r:.40} does not exist{did_you_mean(variable, known)}")
     rows = [_row(m, name) | {"values": results.series(variable, person)} for m, name, results in _each(board)]

@@ -56,7 +56,11 @@ class StoredResults:
                 if own is not None:
                     arrays |= {f"{len(rows)}.{key}": values for key, values in own.items()}
                     rows.append(_facts(member, name, results))
-        fits = [{"settings": one.choice.settings, "fit": one.fit} for one in board.members if one.fit is not None]
+        fits = [
+            {"settings": member.choice.settings, "fit": member.fit}
+            for member in board.members
+            if member.fit is not None
+        ]
         about = json.dumps({"results": rows, "fits": fits}).encode()
         buffer = io.BytesIO()
         np.savez_compressed(buffer, **{ABOUT: np.frombuffer(about, dtype=np.uint8)}, **arrays)  # type: ignore[arg-type]
@@ -82,7 +86,7 @@ class StoredResults:
             return
 
     def _give(self, board: PredictionBoard, number: int, row: dict[str, Any], file: Any) -> None:
-        member = next((one for one in board.members if _same(one, row["settings"])), None)
+        member = next((member for member in board.members if _same(member, row["settings"])), None)
         try:
             windows = board.windows(row["input"])
         except InputError:  # the input is not degraded now
@@ -114,8 +118,8 @@ def _facts(member: BoardMember, name: str, results: PredictorResults) -> dict[st
 def _fingerprint(windows: tuple[Windows, Windows]) -> str:
     """Return a text that differs for other windows."""
     found = hashlib.blake2b(digest_size=16)
-    for one in windows:
-        for array in (one.frame, one.id, one.position, one.present):
+    for window in windows:
+        for array in (window.frame, window.id, window.position, window.present):
             found.update(repr(array.shape).encode() + np.ascontiguousarray(array).tobytes())
     return found.hexdigest()
 
@@ -125,18 +129,18 @@ def _packed(results: PredictorResults) -> Arrays | None:
     part = results.whole()
     if part is None:
         return None
-    found: Arrays = {
+    arrays: Arrays = {
         "first": np.array([part.first]),
-        "shapes": np.array([one.shape[:3] for one in part.paths], dtype=np.int64).reshape(-1, 3),
+        "shapes": np.array([path.shape[:3] for path in part.paths], dtype=np.int64).reshape(-1, 3),
         "ids": np.concatenate(part.ids),
-        "paths": np.concatenate([one.ravel() for one in part.paths]),
+        "paths": np.concatenate([path.ravel() for path in part.paths]),
         "weight": np.concatenate(part.weight),
         "names": np.array(part.names, dtype=np.str_).reshape(-1, 2),
-        "fit": np.concatenate([np.stack(one, axis=1) for one in part.fit]) if part.fit else np.zeros((0, 2, 0)),
+        "fit": np.concatenate([np.stack(item, axis=1) for item in part.fit]) if part.fit else np.zeros((0, 2, 0)),
     }
     for name, values in (("frames", part.frames), ("errors", part.errors)):
-        found |= {f"{name}.{one.name}": getattr(values, one.name) for one in dataclasses.fields(values)}
-    return found
+        arrays |= {f"{name}.{field.name}": getattr(values, field.name) for field in dataclasses.fields(values)}
+    return arrays
 
 
 def _unpacked(windows: tuple[Windows, Windows], row: dict[str, Any], arrays: Arrays) -> PredictorResults:
@@ -147,19 +151,21 @@ def _unpacked(windows: tuple[Windows, Windows], row: dict[str, Any], arrays: Arr
     fit = np.split(arrays["fit"], counts) if arrays["fit"].size else []
     part = WindowPart(
         int(arrays["first"][0]),
-        FrameResults(**{one.name: arrays[f"frames.{one.name}"] for one in dataclasses.fields(FrameResults)}),
-        PersonErrors(**{one.name: arrays[f"errors.{one.name}"] for one in dataclasses.fields(PersonErrors)}),
+        FrameResults(**{field.name: arrays[f"frames.{field.name}"] for field in dataclasses.fields(FrameResults)}),
+        PersonErrors(**{field.name: arrays[f"errors.{field.name}"] for field in dataclasses.fields(PersonErrors)}),
         np.split(arrays["ids"], counts),
-        [one.reshape(*shape, 2) for one, shape in zip(paths, shapes.tolist(), strict=True)],
+        [path.reshape(*shape, 2) for path, shape in zip(paths, shapes.tolist(), strict=True)],
         np.split(arrays["weight"], np.cumsum(futures)[:-1]),
-        [(one[:, 0], one[:, 1]) for one in fit],
+        [(item[:, 0], item[:, 1]) for item in fit],
         tuple((str(name), str(unit)) for name, unit in arrays["names"]),
     )
-    found = PredictorResults(*windows)
-    found.add(part)
-    found.state, found.problem, found.note = (str(row[name]) for name in ("state", "problem", "note"))
+    predictor_results = PredictorResults(*windows)
+    predictor_results.add(part)
+    predictor_results.state, predictor_results.problem, predictor_results.note = (
+        str(row[name]) for name in ("state", "problem", "note")
+    )
     if row["score"] is not None:
         name, samples, rule = row["score"]
-        score = Score.of(part.errors, name, samples, found.future, rule)
-        found.score = dataclasses.replace(score, seconds_per_window=float(part.frames.seconds.mean()))
-    return found
+        score = Score.of(part.errors, name, samples, predictor_results.future, rule)
+        predictor_results.score = dataclasses.replace(score, seconds_per_window=float(part.frames.seconds.mean()))
+    return predictor_results

@@ -82,22 +82,22 @@ def image_descriptions(simulation: Simulation) -> list[dict[str, Any]]:
     """
     return [
         {
-            "name": one.name,
-            "title": f"{one.control.robot.name} / {one.sensor.name}: {TITLES[one.kind]}",
-            "kind": one.kind,
-            "width": one.sensor.mount.sensor.width,
-            "height": one.sensor.mount.sensor.height,
-            "rate": round(1e9 / one.sensor.schedule.ticks.period_ns, 3),
-            "scale": _scale(one),
+            "name": image.name,
+            "title": f"{image.control.robot.name} / {image.sensor.name}: {TITLES[image.kind]}",
+            "kind": image.kind,
+            "width": image.sensor.mount.sensor.width,
+            "height": image.sensor.mount.sensor.height,
+            "rate": round(1e9 / image.sensor.schedule.ticks.period_ns, 3),
+            "scale": _scale(image),
         }
-        for one in sensor_images(simulation)
+        for image in sensor_images(simulation)
     ]
 
 
 def _scale(image: SensorImage) -> dict[str, Any]:
     if image.kind == "depth":
         camera = image.sensor.mount.sensor
-        colors = [f"#{one}" for one in reversed(VIRIDIS)]
+        colors = [f"#{item}" for item in reversed(VIRIDIS)]
         ends = {"nearer": f"#{NEARER}", "beyond": f"#{BEYOND}"}
         return {"low": camera.range_min, "high": camera.range_max, "unit": "m", "colors": colors} | ends
     if image.kind == "labels":
@@ -161,7 +161,7 @@ def _depth_index(depth: Floats, camera: Any) -> Bytes:
 
 
 def _depth_palette() -> list[str]:
-    stops = np.array([list(bytes.fromhex(one)) for one in reversed(VIRIDIS)], dtype=np.float64)
+    stops = np.array([list(bytes.fromhex(item)) for item in reversed(VIRIDIS)], dtype=np.float64)
     at = np.linspace(0.0, len(stops) - 1.0, 254)
     rows = np.stack([np.interp(at, np.arange(len(stops)), stops[:, k]) for k in range(3)], axis=1)
     return [NEARER, BEYOND, *(bytes(row).hex() for row in np.round(rows).astype(np.uint8))]

@@ -58,9 +58,9 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
         "regions": list(shapes().regions),
         "parts": list(shapes().parts),
         "people": _people(simulation, motion) if motion is not None else {},
-        "robots": [_robot(one, simulation) for one in simulation.robots],
+        "robots": [_robot(robot, simulation) for robot in simulation.robots],
         "sensors": [
-            _sensor(robot, sensor) for robot, one in enumerate(simulation.robots) for sensor in one.sensors
+            _sensor(robot, sensor) for robot, item in enumerate(simulation.robots) for sensor in item.sensors
         ],
         "images": image_descriptions(simulation),
         "layers": [{"name": name, "title": title} for name, title in LAYERS.items()],
@@ -70,14 +70,14 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
 def _people(simulation: Simulation, motion: PeopleMotion) -> dict[str, Any]:
     people = motion.people
     body, scale = people.asset_rows
-    riders = np.isin(motion.agents, [one.agent for one in simulation.robots])
+    riders = np.isin(motion.agents, [robot.agent for robot in simulation.robots])
     return {
         "body": body.tolist(),
-        "kind": [one.name for one in people.persons],
+        "kind": [person.name for person in people.persons],
         "scale": scale.round(6).tolist(),
         "height": people.height.round(4).tolist(),
-        "colors": [_hex(region_colors(one)) for one in people.outfits],
-        "parts": [sum(1 << part for part in worn_parts(one)) for one in people.outfits],
+        "colors": [_hex(region_colors(outfit)) for outfit in people.outfits],
+        "parts": [sum(1 << part for part in worn_parts(outfit)) for outfit in people.outfits],
         "radius": simulation.world.environment_scene(0).radius[0, motion.agents].round(4).tolist(),
         "rider": riders.tolist(),
     }
@@ -110,7 +110,9 @@ def _mesh_key(robot: Robot) -> str:
     words = [robot.name, *shown_links(robot)]
     for name in shown_links(robot):
         link = robot.model.links[name]
-        words += [f"{one.color}{one.origin.tobytes().hex()}{one.shape}" for one in link.visuals or link.collisions]
+        words += [
+            f"{visual.color}{visual.origin.tobytes().hex()}{visual.shape}" for visual in link.visuals or link.collisions
+        ]
     return format(zlib.crc32("|".join(words).encode()), "08x")
 
 

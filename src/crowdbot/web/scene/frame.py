@@ -56,9 +56,9 @@ def pack_bones(rotation: Floats, rows: NDArray[np.int64]) -> NDArray[np.int16]:
     >>> pack_bones(np.eye(3)[None, None], np.array([0])).tolist()
     [[32767, 0, 0, 0]]
     """
-    found = np.empty((len(rows), 4 * rotation.shape[1]), dtype=np.int16)
-    _pack(rotation, rows, found)
-    return found
+    result = np.empty((len(rows), 4 * rotation.shape[1]), dtype=np.int16)
+    _pack(rotation, rows, result)
+    return result
 
 
 Arrays = dict[str, NDArray[Any]]
@@ -139,9 +139,9 @@ def _places(scene: Any, agents: NDArray[np.int64]) -> NDArray[np.float32]:
 
 
 def _robots(instant: SceneInstant) -> Arrays:
-    present = [(k, one) for k, one in enumerate(instant.simulation.robots) if instant.scene.active[0, one.agent]]
-    agents = np.array([one.agent for _, one in present], dtype=np.int64)
-    links = [instant.links(one) for _, one in present]
+    present = [(k, robot) for k, robot in enumerate(instant.simulation.robots) if instant.scene.active[0, robot.agent]]
+    agents = np.array([item.agent for _, item in present], dtype=np.int64)
+    links = [instant.links(item) for _, item in present]
     return {
         "bots": np.array([k for k, _ in present], dtype=np.uint16),
         "botplace": _places(instant.scene, agents),

@@ -147,22 +147,22 @@ def _add_instant(pack: _Pack, simulation: Simulation) -> None:
 
 def _add_images(pack: _Pack, simulation: Simulation, recorded: RecordedEpisode) -> list[dict[str, Any]]:
     """Add the recorded images ``image/NUMBER/ROW``; return the description, type and times [s] of those of a number."""
-    found: list[dict[str, Any]] = []
+    images: list[dict[str, Any]] = []
     for image, about in zip(sensor_images(simulation), image_descriptions(simulation), strict=True):
         times, kind = list[float](), ""
         for reading in recorded.readings.get(f"{image.control.robot.name}/{image.sensor.name}", ()):
             frame = encode_image(reading, image, "image")
             kind = "png" if "png" in frame.arrays else "jpeg"
             data = frame.arrays[kind].tobytes()
-            pack.add(f"image/{len(found)}/{len(times)}", data)
+            pack.add(f"image/{len(images)}/{len(times)}", data)
             pack.size += len(data)
             times.append(frame.time)
             if pack.size > LARGEST:
                 raise InputError(f"{recorded.name} is too long for one file: with its camera images it needs more than"
                                  f" {LARGEST / 1e6:g} MB")  # fmt: skip
         if times:
-            found.append({"image": about, "type": f"image/{kind}", "times": times})
-    return found
+            images.append({"image": about, "type": f"image/{kind}", "times": times})
+    return images
 
 
 def _page(pack: _Pack, simulation: Simulation, events: Sequence[EpisodeEvent], images: Sequence[dict[str, Any]]) -> str:
@@ -170,7 +170,7 @@ def _page(pack: _Pack, simulation: Simulation, events: Sequence[EpisodeEvent], i
     for level in LEVELS:
         pack.add(f"bodies/{level}.bin", scene_resource(simulation, f"bodies/{level}.bin", {}).data)
     index: dict[str, Any] = {"name": trial.name, "about": trial.about, "layers": SHOWN, "optional": list(LAYERS)}
-    index |= {"events": [one._asdict() for one in events], "images": images}
+    index |= {"events": [event._asdict() for event in events], "images": images}
     pack.add("index.json", json.dumps(index).encode())
     folder = resources.files("crowdbot").joinpath("assets", "web")
     page, style, script, licenses = (

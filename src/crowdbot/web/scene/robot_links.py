@@ -62,10 +62,10 @@ def link_frames(
         tilt: height [m], roll and pitch [rad] of the root link; None: upright on a level floor.
     """
     poses = robot.model.poses({**robot.posture, **joints})
-    found = np.array([poses[name] for name in shown_links(robot)]).reshape(-1, 4, 4)
+    result = np.array([poses[name] for name in shown_links(robot)]).reshape(-1, 4, 4)
     if tilt is not None:
         height, roll, pitch = tilt
         turn = SpatialPose.of((0.0, 0.0, 0.0), roll=roll, pitch=pitch).matrix[0]
-        return np.asarray(frame((0.0, 0.0, height), turn) @ found)
-    found[:, 2, 3] += robot.lift
-    return found
+        return np.asarray(frame((0.0, 0.0, height), turn) @ result)
+    result[:, 2, 3] += robot.lift
+    return result

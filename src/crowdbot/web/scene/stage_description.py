@@ -34,9 +34,9 @@ def stage_description(stage: Any) -> dict[str, Any]:
         "wall": list(physical.wall_color),
         "walls": [_wall(ring) for ring in rings],
         "walkable": [list(map(list, stage.walkable))] if stage.walkable else [],
-        "ground": [_part(one) for one in (physical.ground.parts if physical.ground is not None else ())],
-        "doors": [_door(one) for one in physical.doors],
-        "props": [_prop(one) for one in physical.props],
+        "ground": [_part(item) for item in (physical.ground.parts if physical.ground is not None else ())],
+        "doors": [_door(door) for door in physical.doors],
+        "props": [_prop(prop) for prop in physical.props],
     }
 
 
@@ -77,14 +77,14 @@ def zone_descriptions(trial: Trial) -> list[dict[str, Any]]:
     """
     found = []
     for kind, elements in (("start", trial.spawners), ("source", trial.sources)):
-        for one in elements:
-            found.append(_zone(kind, one.name, one.zone))
-            if one.goal:
-                found.append(_zone("goal", one.name, one.goal))
-    found += [_zone("exit", one.name, one.zone) for one in trial.exits]
-    found += [_zone("portal", one.name, one.zone) for one in trial.portals]
+        for element in elements:
+            found.append(_zone(kind, element.name, element.zone))
+            if element.goal:
+                found.append(_zone("goal", element.name, element.goal))
+    found += [_zone("exit", item.name, item.zone) for item in trial.exits]
+    found += [_zone("portal", portal.name, portal.zone) for portal in trial.portals]
     for journey in trial.journeys:
-        found += [_zone("stop", journey.name, one.points) for one in journey.stops if hasattr(one, "points")]
+        found += [_zone("stop", journey.name, stop.points) for stop in journey.stops if hasattr(stop, "points")]
     unique: list[dict[str, Any]] = []
     for zone in found:
         if zone not in unique:
@@ -100,10 +100,10 @@ def scene_bounds(simulation: Simulation) -> list[float]:
     """Return x0, y0, x1, y1 [m] around walls, people, robots and their goals; zones count without other limits."""
     trial, scene = simulation.trial, simulation.world.environment_scene(0)
     there = scene.active[0]
-    points = [*trial.stage.rings, scene.position[0, there], *(one.goal for one in simulation.robots)]
+    points = [*trial.stage.rings, scene.position[0, there], *(robot.goal for robot in simulation.robots)]
     if not trial.stage.rings:
         points += [np.array(zone["points"]) for zone in zone_descriptions(trial)]
-    every = np.concatenate([np.asarray(one, dtype=np.float64).reshape(-1, 2) for one in points])
+    every = np.concatenate([np.asarray(point, dtype=np.float64).reshape(-1, 2) for point in points])
     every = every[np.isfinite(every).all(axis=1)]
     if not len(every):
         return [-5.0, -5.0, 5.0, 5.0]
@@ -116,9 +116,9 @@ def scene_focus(simulation: Simulation) -> list[float]:
     """Return x, y [m] of the first robot, or the middle of all people."""
     scene = simulation.world.environment_scene(0)
     there = scene.active[0].copy()
-    for one in simulation.robots[:1]:
-        if there[one.agent]:
-            return [float(value) for value in scene.position[0, one.agent].round(3)]
+    for robot in simulation.robots[:1]:
+        if there[robot.agent]:
+            return [float(value) for value in scene.position[0, robot.agent].round(3)]
     if not there.any():
         return [0.0, 0.0]
     return [float(value) for value in scene.position[0, there].mean(axis=0).round(3)]

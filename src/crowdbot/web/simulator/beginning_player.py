@@ -68,9 +68,9 @@ class BeginningPlayer:
 
     def resource(self, path: str) -> Resource:
         """Return a mesh; raises KeyError if there is none."""
-        found = self.recorded.resource(path)
+        result = self.recorded.resource(path)
         self._loaded.set()
-        return found
+        return result
 
     def wait_for_page(self, seconds: float) -> None:
         """Wait until a page loads the picture, at most some seconds, because the compiler then slows the server."""

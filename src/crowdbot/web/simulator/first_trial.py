@@ -65,7 +65,7 @@ def read_link(address: Mapping[str, str]) -> Link | None:
         values = json.loads(text)
     except (ValueError, RecursionError):
         values = None
-    if not isinstance(values, dict) or not all(isinstance(one, str) for one in values.values()):
+    if not isinstance(values, dict) or not all(isinstance(value, str) for value in values.values()):
         raise InputError(f"the address of the page has values={text!r:.80}: expected a JSON object of texts")
     return Link(name, values, seed, False, 1 if variant is None else variant, time, paused)
 

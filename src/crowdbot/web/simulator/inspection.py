@@ -29,7 +29,7 @@ def inspect_agent(simulation: Simulation, agent: int) -> dict[str, Any]:
     scene = simulation.world.environment_scene(0)
     x, y = scene.position[0, slot].tolist()
     goal = scene.goal[0, slot].tolist()
-    control = next((one for one in simulation.robots if one.agent == slot), None)
+    control = next((robot for robot in simulation.robots if robot.agent == slot), None)
     if control is not None:
         goal = control.goal[0].tolist()
     rows: list[list[Any]] = [
@@ -55,15 +55,15 @@ def people_rows(simulation: Simulation, recorded: SceneInstant | None = None) ->
         simulation: the simulation.
         recorded: a recorded instant, instead of that of the simulation.
     """
-    found = []
+    result = []
     scene = simulation.world.environment_scene(0) if recorded is None else recorded.scene
     ids = simulation.world.ids[0] if recorded is None else recorded.ids
-    robots = {one.agent: one.robot.name for one in simulation.robots}
+    robots = {robot.agent: robot.robot.name for robot in simulation.robots}
     for slot in np.flatnonzero(scene.active[0]).tolist():
         x, y = scene.position[0, slot].round(2).tolist()
         kind, name = ("robot", robots[slot]) if slot in robots else ("person", _avatar(simulation, slot))
-        found.append({"id": int(ids[slot]), "kind": kind, "name": name, "x": x, "y": y})
-    return found
+        result.append({"id": int(ids[slot]), "kind": kind, "name": name, "x": x, "y": y})
+    return result
 
 
 def _robot_rows(control: RobotControl) -> list[list[Any]]:
@@ -82,7 +82,7 @@ def _robot_rows(control: RobotControl) -> list[list[Any]]:
 
 def _person_rows(simulation: Simulation, slot: int) -> list[list[Any]]:
     scene = simulation.world.environment_scene(0)
-    found: list[list[Any]] = [
+    person_rows: list[list[Any]] = [
         ["preferred speed", round(float(scene.preferred_speed[0, slot]), 3), "m/s"],
         ["radius", round(float(scene.radius[0, slot]), 3), "m"],
         ["model", _model_name(simulation, slot), ""],
@@ -90,10 +90,10 @@ def _person_rows(simulation: Simulation, slot: int) -> list[list[Any]]:
     if simulation.trial.balance:
         pose = worlds_of(simulation.world)[0].fall_poses_of(0).get(slot)
         state = "upright" if pose is None else "out of balance"
-        found.append(["balance", "falls, lies or gets up" if pose is not None and pose.down else state, ""])
+        person_rows.append(["balance", "falls, lies or gets up" if pose is not None and pose.down else state, ""])
     if scene.group[0, slot] >= 0:
-        found.append(["group", int(scene.group[0, slot]), ""])
-    return found
+        person_rows.append(["group", int(scene.group[0, slot]), ""])
+    return person_rows
 
 
 def _model_name(simulation: Simulation, slot: int) -> str:
@@ -110,7 +110,7 @@ def _crowd_number(model: Any, simulation: Simulation, slot: int) -> int:
 
 def _avatar(simulation: Simulation, slot: int) -> str:
     trial = simulation.trial
-    recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+    recorded = sum(len(item.walks(trial.duration)) for item in trial.recorded)
     k = slot - (trial.people - recorded - len(trial.avatars))
     return trial.avatars[k].name if 0 <= k < len(trial.avatars) else ""
 

@@ -162,7 +162,7 @@ class LiveRun:
             "speed": self.loop.speed, "factor": self.view.factor, "seed": self.seed, "trial": self.trial.name,
             "outcome": None if run is None else run.outcome, "problems": self.problems, "orders": self.given,
             "compiling": self.compiling, "recorded": recorded, "values": self.values,
-            "metrics": {key: one for key, one in self.metrics.items() if math.isfinite(one)},
+            "metrics": {key: metric for key, metric in self.metrics.items() if math.isfinite(metric)},
         }  # fmt: skip
 
     def _state_word(self) -> str:
@@ -191,7 +191,7 @@ class LiveRun:
             self._fail([f"{type(error).__name__}: {error}"])
             return
         self._run = run
-        self._statistics = next(one for one in run.sinks if isinstance(one, EpisodeStatistics))
+        self._statistics = next(sink for sink in run.sinks if isinstance(sink, EpisodeStatistics))
         self._stop_beginning()
         if run.outcome is not None:
             self.loop.ended.set()

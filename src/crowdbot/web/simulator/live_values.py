@@ -46,7 +46,7 @@ def live_values(simulation: Simulation, recorded: Scene | None = None) -> dict[s
     (1.0, 0.0)
     """
     scene = simulation.world.environment_scene(0) if recorded is None else recorded
-    robots = [one.agent for one in simulation.robots]
+    robots = [robot.agent for robot in simulation.robots]
     people = scene.active[0].copy()
     people[robots] = False
     pace = np.hypot(*scene.velocity[0, people].T)
@@ -74,7 +74,7 @@ def live_values(simulation: Simulation, recorded: Scene | None = None) -> dict[s
             "ttc": now.ttc,
             "density": now.density,
         }
-    return {one.name: _finite(found.get(one.name, math.nan)) for one in LIVE_VALUES}
+    return {item.name: _finite(found.get(item.name, math.nan)) for item in LIVE_VALUES}
 
 
 def _finite(value: float) -> float | None:

@@ -112,7 +112,7 @@ class Playback:
             "duration": self.end_time, "speed": self.loop.speed, "factor": self.view.factor, "seed": episode.seed,
             "trial": episode.name, "outcome": episode.outcome, "problems": self.problems,
             "orders": len(episode.orders), "compiling": self.compiling, "values": self.values,
-            "metrics": {key: one for key, one in episode.metrics.items() if math.isfinite(one)},
+            "metrics": {key: metric for key, metric in episode.metrics.items() if math.isfinite(metric)},
         }  # fmt: skip
 
     def _state_word(self) -> str:

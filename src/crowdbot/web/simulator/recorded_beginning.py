@@ -78,7 +78,7 @@ class RecordedBeginning:
         Raises:
             KeyError: there is no such mesh.
         """
-        names = [one["mesh"] for one in self._description["robots"]]
+        names = [item["mesh"] for item in self._description["robots"]]
         if path in names:
             ends = self._arrays["meshends"]
             place = names.index(path)
@@ -130,7 +130,7 @@ class RecordedBeginning:
             if schedule.is_due(simulation.ticks)[0]:
                 frames.append(scene_frame(simulation, (), bodies.motion))
             run.step()
-        meshes = [scene_resource(simulation, one["mesh"], {}).data for one in description["robots"]]
+        meshes = [scene_resource(simulation, item["mesh"], {}).data for item in description["robots"]]
         return RecordedBeginning(_packed(frames, description, meshes))
 
 
@@ -151,13 +151,13 @@ def _packed(frames: Sequence[StateFrame], description: dict[str, Any], meshes: S
             values[at, who] = frame.arrays[name]
     rows["pelvis"][..., :2] -= rows["place"][..., :2]
     return {
-        "times": np.array([one.time for one in frames], dtype=np.float32),
+        "times": np.array([frame.time for frame in frames], dtype=np.float32),
         "present": present.astype(bool), "ids": ids, "bots": frames[0].arrays["bots"],
         "place": np.round(rows["place"] / MILLIMETRE).astype(np.int16),
         "pelvis": np.round(rows["pelvis"] / MILLIMETRE).astype(np.int16),
         "root": rows["bones"][..., :4].astype(np.int16), "joints": _joints(rows["bones"]),
-        "botplace": np.stack([one.arrays["botplace"] for one in frames]),
-        "links": np.stack([one.arrays["links"] for one in frames]),
+        "botplace": np.stack([frame.arrays["botplace"] for frame in frames]),
+        "links": np.stack([frame.arrays["links"] for frame in frames]),
         "description": np.frombuffer(json.dumps(description).encode(), dtype=np.uint8),
         "meshes": np.frombuffer(b"".join(meshes), dtype=np.uint8),
         "meshends": np.cumsum([0, *map(len, meshes)]),

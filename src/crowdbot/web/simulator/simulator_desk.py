@@ -108,7 +108,7 @@ class SimulatorDesk(Desk):
             "status": self._status(), "source": self._source, "layers": sorted(self._layers),
             "cameras": sorted(self._cameras.chosen), "predictor": builtin_name(type(self._predictor), Predictor),
             "known_layers": [{"name": name, "title": title} for name, title in LAYERS.items()],
-            "plots": [one._asdict() for one in LIVE_VALUES], "history": list(self._history),
+            "plots": [item._asdict() for item in LIVE_VALUES], "history": list(self._history),
         }  # fmt: skip
 
     @command
@@ -117,7 +117,7 @@ class SimulatorDesk(Desk):
         titles = trial_titles()
         found = [
             {"name": name, "title": titles[name], "built_in": True, "parameters": parameter_rows(name)}
-            for name in sorted(titles, key=lambda one: (one.startswith("challenge"), one))
+            for name in sorted(titles, key=lambda title: (title.startswith("challenge"), title))
         ]
         own = [
             {"name": name, "title": "", "built_in": False, "parameters": []} for name in self.session.workspace.trials()
@@ -170,7 +170,7 @@ class SimulatorDesk(Desk):
         """Run the trial again with an avatar that the user moves, and return its name."""
         run = self._live()
         old = run.trial
-        if any(one.name == AVATAR for one in old.avatars):
+        if any(avatar.name == AVATAR for avatar in old.avatars):
             return AVATAR
         xml = f'<avatar name="{AVATAR}" source="external" x="{x:g}" y="{y:g}" heading="{heading:g}"/>'
         trial = add_element(old, xml, place=f"trial {old.name!r} with a person", trust=False)
@@ -222,10 +222,10 @@ class SimulatorDesk(Desk):
     def episode(self) -> dict[str, Any]:
         """Return events and series of the recorded episode."""
         player = self._playback()
-        found: dict[str, Any] = player.do(
-            lambda: {"events": [one._asdict() for one in player.events], "series": player.series}
+        result: dict[str, Any] = player.do(
+            lambda: {"events": [event._asdict() for event in player.events], "series": player.series}
         )
-        return found
+        return result
 
     @command
     def branch(self, at: float, changes: dict[str, Any], name: str | None = None) -> str:
@@ -277,7 +277,9 @@ class SimulatorDesk(Desk):
         changes = list[str]()
         if isinstance(player, LiveRun):
             changes += [f"{player.given} order{'s' * (player.given > 1)}"] if player.given else []
-            changes += ["the person that you move"] if any(one.name == AVATAR for one in player.trial.avatars) else []
+            changes += (
+                ["the person that you move"] if any(avatar.name == AVATAR for avatar in player.trial.avatars) else []
+            )
         return self._source, place, " and ".join(changes)
 
     @command
@@ -294,8 +296,8 @@ class SimulatorDesk(Desk):
         player = self._any()
         if (recorded := self._beginning()) is not None:
             return recorded.resource(path)
-        found: Resource = player.do(lambda: scene_resource(player.view.simulation, path, query))
-        return found
+        result: Resource = player.do(lambda: scene_resource(player.view.simulation, path, query))
+        return result
 
     def close(self) -> None:
         """Stop the run."""
@@ -412,8 +414,8 @@ class SimulatorDesk(Desk):
         player, recorded = self._any(), self._beginning()
         if recorded is not None:
             return recorded.description()
-        found: dict[str, Any] = {} if player.state == "preparing" else player.do(player.view.description)
-        return found
+        result: dict[str, Any] = {} if player.state == "preparing" else player.do(player.view.description)
+        return result
 
     @command
     def show_frame(self) -> None:
@@ -472,8 +474,8 @@ class SimulatorDesk(Desk):
     def inspect(self, id: int) -> dict[str, Any]:
         """Return the state of a person or robot."""
         player = self._any()
-        found: dict[str, Any] = self._asked(lambda: inspect_agent(player.simulation, id))
-        return found
+        result: dict[str, Any] = self._asked(lambda: inspect_agent(player.simulation, id))
+        return result
 
     @command
     def people(self) -> list[dict[str, Any]]:
@@ -597,7 +599,9 @@ def _recorded_instant(player: Playback, at: float) -> float:
 
 def _free_name(simulation: Simulation) -> tuple[str, bool]:
     """Return a new name of a robot, and whether people have limbs."""
-    names = {robot.name for robot in simulation.trial.robots} | {one.robot.name for one in simulation.former_robots}
+    names = {robot.name for robot in simulation.trial.robots} | {
+        former_robot.robot.name for former_robot in simulation.former_robots
+    }
     name = next(name for k in range(1, 1000) if (name := f"added{k}") not in names)
     return name, worlds_of(simulation.world)[0].people is not None
 
@@ -623,10 +627,10 @@ def navigator_orders(robot: str, navigator: Navigator) -> list[Order]:
 
 def _held_avatar(simulation: Simulation, name: str) -> HeldAvatar:
     trial = simulation.trial
-    known = [one.name for one in trial.avatars]
+    known = [avatar.name for avatar in trial.avatars]
     if name not in known:
         raise InputError(f"there is no avatar {name!r}{did_you_mean(name, known)}; the trial has {known or 'none'}")
-    recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+    recorded = sum(len(item.walks(trial.duration)) for item in trial.recorded)
     slot = trial.people - recorded - len(known) + known.index(name)
     scene = simulation.world.environment_scene(0)
     x, y = scene.position[0, slot].tolist()

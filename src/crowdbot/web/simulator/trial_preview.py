@@ -41,7 +41,7 @@ def trial_preview(trial: Trial) -> dict[str, Any]:
     2
     """
     rng = np.random.default_rng(0)
-    discs = [_disc((one.x, one.y), _first(one.goal), one.radius, 0) for one in trial.agents]
+    discs = [_disc((agent.x, agent.y), _first(agent.goal), agent.radius, 0) for agent in trial.agents]
     goals = {journey.name: _stop(journey) for journey in trial.journeys}
     for spawner in trial.spawners:
         zone = np.asarray(spawner.zone, dtype=np.float64)
@@ -49,7 +49,7 @@ def trial_preview(trial: Trial) -> dict[str, Any]:
         for place in _points(zone, min(spawner.count, MOST - len(discs)), rng):
             ahead = None if goal is None else (place + goal - zone.mean(axis=0))
             discs.append(_disc(place, ahead, 0.25, 0))
-    discs += [_disc((one.x, one.y), one.goal.position, float(one.radius), 1) for one in trial.robots]
+    discs += [_disc((robot.x, robot.y), robot.goal.position, float(robot.radius), 1) for robot in trial.robots]
     rings = [np.asarray(ring) for ring in trial.stage.rings]
     every = np.concatenate([*rings, np.array([disc[:2] for disc in discs]).reshape(-1, 2), np.zeros((0, 2))])
     low, high = (
@@ -67,7 +67,7 @@ def _disc(place: Any, goal: Any, radius: float, robot: int) -> list[float]:
     way = (0.0, 0.0) if goal is None else (float(goal[0]) - x, float(goal[1]) - y)
     length = math.hypot(*way)
     speed = PACE / length if length > 0.1 else 0.0
-    return [round(one, 3) for one in (x, y, way[0] * speed, way[1] * speed, radius, robot)]
+    return [round(item, 3) for item in (x, y, way[0] * speed, way[1] * speed, radius, robot)]
 
 
 def _first(points: Any) -> Any:
@@ -88,13 +88,13 @@ def _stop(journey: Any) -> Floats | None:
 def _points(zone: Floats, count: int, rng: np.random.Generator) -> list[Floats]:
     """Return random points in a polygon."""
     low, high = zone.min(axis=0), zone.max(axis=0)
-    found: list[Floats] = []
+    points: list[Floats] = []
     for place in rng.uniform(low, high, (max(0, 40 * count), 2)):
-        if len(found) >= count:
+        if len(points) >= count:
             break
         if _is_inside(place, zone):
-            found.append(place)
-    return found
+            points.append(place)
+    return points
 
 
 def _is_inside(place: Floats, zone: Floats) -> bool:
@@ -114,7 +114,10 @@ def trial_thumbnail(trial: Trial) -> str:
     found = trial_preview(trial)
     left, low, right, high = found["bounds"]
     least = SMALLEST * max(right - left, high - low)
-    ways = [Path2D(np.array([(one.x, one.y), one.goal.position], dtype=np.float64), WAY, 5.0) for one in trial.robots]
+    ways = [
+        Path2D(np.array([(robot.x, robot.y), robot.goal.position], dtype=np.float64), WAY, 5.0)
+        for robot in trial.robots
+    ]
     walls = [Path2D(np.asarray(ring, dtype=np.float64), WALL_COLOR, 7.0) for ring in found["walls"]]
     discs = [
         Disc(x, y, max(radius, 1.7 * least if robot else least), ROBOT_COLOR if robot else PERSON_COLOR)

@@ -42,11 +42,11 @@ def _rows(thing: Any, path: str) -> Iterator[dict[str, Any]]:
             yield from _rows(value, where)
         elif part.role == "children":
             ones = part.into.spread(value) if part.into else value
-            words = [_word(part, one) for one in ones]
-            for k, (one, word) in enumerate(zip(ones, words, strict=True)):
+            words = [_word(part, item) for item in ones]
+            for k, (item, word) in enumerate(zip(ones, words, strict=True)):
                 number = 1 + words[:k].count(word)
-                which = f"[{getattr(one, 'name', '') or number}]" if words.count(word) > 1 else ""
-                yield from _rows(one, f"{path}/{word}{which}" if path else f"{word}{which}")
+                which = f"[{getattr(item, 'name', '') or number}]" if words.count(word) > 1 else ""
+                yield from _rows(item, f"{path}/{word}{which}" if path else f"{word}{which}")
         elif part.role == "plugged" and value is not None:
             yield from _plug_rows(where, part, value)
         elif part.role == "mounted" and value is not None:
@@ -117,17 +117,17 @@ def parameter_rows(name: str) -> list[dict[str, Any]]:
     """Return the parameters of a built-in trial as rows of a form."""
     preset = PRESETS.get(name)
     rows: list[dict[str, Any]] = []
-    for key, one in preset.options.items() if preset is not None else ():
+    for key, item in preset.options.items() if preset is not None else ():
         kinds = {bool: "switch", int: "whole", float: "number", str: "text"}
         row = {
             "name": key,
-            "label": one.about,
-            "unit": one.unit,
-            "value": one.default,
-            "kind": kinds[type(one.default)],
+            "label": item.about,
+            "unit": item.unit,
+            "value": item.default,
+            "kind": kinds[type(item.default)],
         }
-        low, high = one.low, one.high
+        low, high = item.low, item.high
         row |= {} if abs(low) == float("inf") else {"low": low}
         row |= {} if abs(high) == float("inf") else {"high": high}
-        rows.append(row | ({"kind": "choice", "choices": list(one.choices)} if one.choices else {}))
+        rows.append(row | ({"kind": "choice", "choices": list(item.choices)} if item.choices else {}))
     return rows
