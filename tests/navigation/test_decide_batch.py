@@ -136,6 +136,10 @@ def test_an_environment_is_an_ordinary_observation():
         for name in ("position", "velocity", "radius", "ids", "existence"):
             np.testing.assert_array_equal(getattr(one.people, name), getattr(single.people, name))
     assert batch.environment(1).people.ids.tolist() == [13]
+    with pytest.raises(TypeError, match="has no field 'colour'"):
+        ObservationBatch.of(scene, 0, LIMITS, dt=0.2, twist=twist, colour=1)
+    with pytest.raises(InputError, match=r"waypoint has shape \[2, 2\], it must be \[3, 2\]"):
+        ObservationBatch.of(scene, 0, LIMITS, dt=0.2, twist=twist, waypoint=np.zeros((2, 2)))
 
 
 def readings(count):

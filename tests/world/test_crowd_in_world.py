@@ -119,6 +119,21 @@ def test_the_symmetry_breaker_turns_preferred_velocities_by_no_more_than_asked()
     assert np.array_equal(after.preferred_velocity, scene.preferred_velocity)
 
 
+def test_the_angle_of_a_person_follows_the_identity_and_not_the_place_in_the_arrays():
+    scene = Scene.of(np.arange(6)[:, None] * [9.0, 0.0], preferred_velocity=np.tile([1.0, 0.0], (6, 1)))
+    first, other = (PlanarWorld(scene, ORCA(), {}, 0.1, heading_jitter=0.1) for _ in range(2))
+    first.step({})
+    other.ids[:] = other.ids[:, ::-1]
+    for world in (first, other):  # the identities of the second one change while it runs
+        world.scene = scene
+    one, two = first.step({}).velocity, other.step({}).velocity
+    assert np.abs(one[0, :, 1]).max() > 0.01
+    assert np.array_equal(one[0, :, 1], two[0, ::-1, 1])
+    first.ids[:] = first.ids[:, ::-1]
+    first.scene = scene
+    assert np.array_equal(first.step({}).velocity, two)
+
+
 def test_substeps_are_steps_between_which_the_robot_goes_on():
     scene = maze(4, external=np.arange(20) == 0)
     scene = scene.replace(velocity=np.where((np.arange(20) == 0)[None, :, None], [0.5, 0.0], scene.velocity))

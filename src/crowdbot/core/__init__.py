@@ -34,9 +34,11 @@ from .model_parameter import (
     check_number,
     check_parameters,
     dense,
+    every,
     parameter,
     parameters,
     per_agent,
+    some,
 )
 from .output_lock import lock_output, release_stale_lock
 from .plugins.class_source import UnreadableValue, reads_only, unread_fields, without_running_code
@@ -143,6 +145,7 @@ __all__ = [
     "draw_svg",
     "draw_uniform",
     "each",
+    "every",
     "explain_write_errors",
     "find_class",
     "format_xml",
@@ -181,6 +184,7 @@ __all__ = [
     "release_stale_lock",
     "required_fields",
     "run_saved_jobs",
+    "some",
     "source_digest",
     "sources_of",
     "storable",

@@ -23,7 +23,10 @@ def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> 
     [[1.0, 2.0], [1.0, 3.0]]
     """
     values = [getattr(model, name) for name in names]
-    if all(type(value) is float or np.ndim(value) == 0 for value in values):
+    for value in values:
+        if type(value) is not float and np.ndim(value) > 0:
+            break
+    else:
         return np.array([values], dtype=np.float64)
     table = np.empty((shape[0] * shape[1], len(names)))
     for k, (value, name) in enumerate(zip(values, names, strict=True)):

@@ -8,6 +8,7 @@ Source of the idea: Fox, Burgard, Thrun 1997, doi:10.1109/100.580977.
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -127,6 +128,7 @@ def _limits(limits: DriveLimits, speed: float) -> Floats:
     )
 
 
+@functools.lru_cache(maxsize=64)
 def _weights(caution: WindowCosts) -> tuple[Floats, int, bool]:
     """Return the weights for kernels, the number of steps, and whether no weight is negative."""
     weights = np.array(caution[1:], dtype=np.float64)

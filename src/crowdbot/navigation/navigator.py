@@ -178,7 +178,13 @@ class Navigator(ABC):
 
     def _keeps(self, kind: type[Navigator], *names: str) -> bool:
         """Return whether no subclass of ``kind`` overrides these methods, which its batch form replaces."""
-        return all(getattr(type(self), name) is getattr(kind, name) for name in ("decide", *names))
+        return _has_own(type(self), kind, ("decide", *names))
+
+
+@functools.cache
+def _has_own(kind: type[Navigator], base: type[Navigator], names: tuple[str, ...]) -> bool:
+    """Return whether a class has the methods of a base."""
+    return all(getattr(kind, name) is getattr(base, name) for name in names)
 
 
 @functools.cache

@@ -177,8 +177,8 @@ class ObservationBatch:
         values: Any = (
             which,
             robot,
-            *(dense(value, (*shape, 2), FLOAT) for value in (scene.position, scene.velocity, scene.goal)),
-            *(dense(value, shape, FLOAT) for value in (scene.heading, scene.radius)),
+            *[dense(value, (*shape, 2), FLOAT) for value in (scene.position, scene.velocity, scene.goal)],
+            *[dense(value, shape, FLOAT) for value in (scene.heading, scene.radius)],
             dense(scene.active, shape, BOOL),
             dense(scene.active if seen is None else seen, shape, BOOL),
             dense(numbers, shape, INTEGER),
@@ -188,18 +188,20 @@ class ObservationBatch:
         )
         if not _gather(*values):
             raise IndexError(f"robot {robot} in environments {which.tolist()}: the scene has the shape {list(shape)}")
-        time = scene.time[which] if isinstance(scene.time, np.ndarray) else np.full(N, scene.time)
-        return cls(
-            pose=pose,
-            goal=goal,
-            radius=radius,
-            limits=limits,
-            dt=dt,
-            twist=moving,
-            people=people,
-            walls=scene.walls,
-            **{"time": time, **others},
-        )
+        time = np.empty(N)
+        time[:] = scene.time[which] if isinstance(scene.time, np.ndarray) else scene.time
+        batch = object.__new__(cls)  # these arrays need no checks
+        batch.__dict__.update(
+            pose=pose, goal=goal, radius=radius, limits=limits, dt=dt, twist=moving, people=people, walls=scene.walls,
+            time=time, waypoint=goal, readings={}, arrived={}, tracks=(), predictor=None, predictor_step=None,
+            outline=DISC,
+        )  # fmt: skip
+        if unknown := others.keys() - cls.__dataclass_fields__.keys():
+            raise TypeError(f"{cls.__name__} has no field {min(unknown)!r}")
+        batch.__dict__.update(others)
+        if not others.keys().isdisjoint(("waypoint", "tracks", "time")):
+            batch.__post_init__()
+        return batch
 
     def __len__(self) -> int:
         """Return the number of environments."""

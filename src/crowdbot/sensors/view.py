@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, tree
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, every, tree
 
 from .lens import ImageSource
 from .wheel_rotation import WheelRotation
@@ -72,7 +72,7 @@ class SensorView:
 
 
 def _is_finite(values: NDArray[np.float64]) -> bool:
-    return bool(np.logical_and.reduce(np.isfinite(values), axis=None))  # half the time of the method ``all``
+    return every(np.isfinite(values))
 
 
 @dataclass(frozen=True)

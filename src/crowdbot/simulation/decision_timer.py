@@ -94,7 +94,7 @@ class DecisionTimer:
                 late[k] = decisions.seconds[k] > (robot.deadline or math.inf)
         if decisions.failures:
             late[list(decisions.failures)] = False
-        for k in np.flatnonzero(decisions.seconds).tolist():
+        for k in decisions.seconds.nonzero()[0].tolist():
             if decisions.seconds[k] > 0.0 and k not in decisions.failures:
                 self.spent[environments[k]] += (float(decisions.seconds[k]),)
         if robot.deadline is not None:
@@ -176,6 +176,12 @@ def _is_own(kind: type) -> bool:
     return kind.__module__.startswith("crowdbot.")
 
 
+@functools.cache
+def _decides_alone(kind: type[Navigator]) -> bool:
+    """Return whether the ``decide_batch`` of a navigator is code of crowdbot."""
+    return _is_own(next(base for base in kind.__mro__ if "decide_batch" in vars(base)))
+
+
 def _decide(
     navigator: Navigator,
     batch: ObservationBatch,
@@ -185,8 +191,7 @@ def _decide(
     clock: Callable[[], float] | None,
 ) -> Decisions:
     """Return the decisions of a navigator; one with a ``decide_batch`` of its own has the limit for all of them."""
-    owner = next(kind for kind in type(navigator).__mro__ if "decide_batch" in vars(kind))
-    if _is_own(owner):
+    if _decides_alone(type(navigator)):
         return navigator.decide_batch(batch, memories, name, clock, limit)
     try:
         decide = functools.partial(navigator.decide_batch, batch, memories, name, clock)

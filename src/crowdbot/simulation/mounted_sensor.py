@@ -10,7 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, Pose, RandomStreams, SpatialPose, Storage, storable, tree
+from crowdbot.core import (
+    InputError,
+    MissingExtra,
+    Pose,
+    RandomStreams,
+    SpatialPose,
+    Storage,
+    every,
+    some,
+    storable,
+    tree,
+)
 from crowdbot.sensors import (
     Reading,
     SensorSchedule,
@@ -161,7 +172,7 @@ class MountedSensor:
         """
         common = around.world.environment_time.common_tick
         measuring = self.schedule.measures(ticks) if common is None else self.schedule.measures(common)
-        due = np.flatnonzero(live if measuring is True else live & measuring)
+        due = (live if measuring is True else live & measuring).nonzero()[0]
         errors: list[tuple[int, Exception]] = []
         for part in [due] if self.together else [due[k : k + 1] for k in range(len(due))]:
             try:
@@ -177,9 +188,9 @@ class MountedSensor:
         ready, later = list[SensorReadings](), list[SensorReadings]()
         for readings in self.waiting:
             now = readings.arrival <= ticks[readings.environments]
-            if np.logical_and.reduce(now):
+            if every(now):
                 ready.append(readings)
-            elif not now.any():
+            elif not some(now):
                 later.append(readings)
             else:
                 ready.append(readings.where(now))
@@ -207,10 +218,11 @@ class MountedSensor:
         return None if readings is None or readings.people is None else readings.people[self.latest_row[environment]]
 
     def _keep(self, readings: SensorReadings) -> None:
-        index = readings.environments
-        self.latest[index] = readings
-        self.latest_row[index] = np.arange(len(index))
-        seen = visible_agents(readings.reading, readings.ids.shape[1])
+        index: Any = readings.environments
+        rows, seen = np.arange(len(index)), visible_agents(readings.reading, readings.ids.shape[1])
+        if len(index) == len(self.latest):
+            index = slice(None)  # faster than an array of indices
+        self.latest[index], self.latest_row[index] = readings, rows
         if seen is None:
             return
         known, ids = self._seen_agents(readings.ids.shape[1])
@@ -238,18 +250,18 @@ class MountedSensor:
         if not self.together:
             return self._measure_one(int(due[0]), agent, around, arrival)
         ids, slots = around.world.ids, around.world.slots
-        every = len(due) == len(self.rngs)
+        whole = len(due) == len(self.rngs)
         scene, pose = around.flat, self.pose(agent, around)
-        if not every:
+        if not whole:
             scene, pose = scene.environments(due), tree.take(pose, due)
-        count, rngs = len(self.rngs), self.rngs if every else self.rngs.rows(due)
-        state = self.state if every or self.state is None else take_state_rows(self.state, due)
+        count, rngs = len(self.rngs), self.rngs if whole else self.rngs.rows(due)
+        state = self.state if whole or self.state is None else take_state_rows(self.state, due)
         wheels = wheel_rotation(around.world, agent, self.wheels)
         view = SensorView(scene.without(agent), pose, wheels=wheels)
         reading, new = measure_rows(self.mount.sensor, view, state, rngs if len(rngs) > 1 else rngs[0])
         if new is not None or self.state is not None:
-            self.state = new if every else put_state_rows(self.state, due, new, count)
-        ids, slots = (ids.copy(), slots.copy()) if every else (ids[due], slots[due])
+            self.state = new if whole else put_state_rows(self.state, due, new, count)
+        ids, slots = (ids.copy(), slots.copy()) if whole else (ids[due], slots[due])
         return SensorReadings(self.name, due, reading, ids, slots, arrival, self._people(around, due))
 
     def _measure_one(self, e: int, agent: int, around: WorldView, arrival: Ints) -> SensorReadings:

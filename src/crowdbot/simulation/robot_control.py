@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, MissingExtra, Storage, TickSchedule, Twist, Walls, tree
+from crowdbot.core import Clock, InputError, MissingExtra, Storage, TickSchedule, Twist, Walls, every, some, tree
 from crowdbot.navigation import (
     DISC,
     AgentsInView,
@@ -173,11 +173,11 @@ class RobotControl:
             perceived=kept or (begin_tracking(count) if robot.people == "tracked" else []),
         )
 
-    def commands(self, times: Floats) -> Twists:
-        """Return the current commands as twists, as the drive gets them at times ``[E]`` [s]."""
+    def commands(self, world: World) -> Twists:
+        """Return the current commands as twists, as the drive gets them now."""
         command = self.command
         if self.faults is not None:
-            command = self.faults.change_commands(command, times, self.robot.radius)
+            command = self.faults.change_commands(command, world.times, self.robot.radius)
         return Twists.of_columns(command.T.copy())
 
     def mount(self, name: str) -> Mount:
@@ -291,8 +291,8 @@ class RobotControl:
             return hangs | (self.decide(around, rest) if len(rest) else {})
         batch, known = self._observe(around, environments)
         failures: dict[int, Exception] = {}
-        every = len(environments) == len(self.begun)
-        if not np.logical_and.reduce(self.begun if every else self.begun[environments]):
+        whole = len(environments) == len(self.begun)
+        if not every(self.begun if whole else self.begun[environments]):
             new = np.flatnonzero(~self.begun[environments])
             first = batch if len(new) == len(environments) else self.observations(around, environments[new])
             memories, failed = self.timer.first_memories(self.robot, first, environments[new])
@@ -300,7 +300,7 @@ class RobotControl:
             for k, memory in zip(new.tolist(), memories, strict=True):
                 self.memories[int(environments[k])] = memory
             self.begun[environments[new]] = True
-        memories = list(self.memories) if every else [self.memories[e] for e in environments]
+        memories = list(self.memories) if whole else [self.memories[e] for e in environments]
         decisions = self.timer.decide(self.robot, batch, memories, environments)
         decisions.failures.update(failures | known.failures)
         failures = decisions.failures
@@ -312,7 +312,7 @@ class RobotControl:
             late = late | self.faults.lost_commands(around.world.times, environments)
         self._remember(environments, known)
         self.wanted = {}
-        if every and not (failures or late.any()):
+        if whole and not (failures or some(late)):
             self.memories[:] = decisions.memories
             self.command[:] = decisions.twist
             if any(decisions.joints):

@@ -34,6 +34,8 @@ from crowdbot.core import (
     Storage,
     Twist,
     draw_svg,
+    every,
+    some,
     tree,
 )
 from crowdbot.metrics import HOLD
@@ -150,7 +152,7 @@ class Simulation:
         An exception in a crowd model, sensor or navigator ends the environment in which it occurs, see
         :attr:`failures`. Such an environment senses and decides nothing more until it is restarted.
         """
-        if not self.begun.all():
+        if not every(self.begun):
             self.begin()
         self._step()
         self.readings = self._observe(~self.failed)
@@ -366,12 +368,13 @@ class Simulation:
     def _step(self) -> None:
         """Parts 1 to 5."""
         ids = self.world.ids.copy()
-        commands = {robot.agent: robot.commands(self.world.times) for robot in self.robots}
+        commands = {robot.agent: robot.commands(self.world) for robot in self.robots}
         self.world, errors = step_environments(self.world, commands)
         if self.around.world is not self.world:
             self._set_around()
         self._fail_all(errors)
-        self.broken[list(errors)] = True
+        if errors:
+            self.broken[list(errors)] = True
         if self.count > len(errors):
             leave_goal_zones(self.world, self._ways_out)
             self.world.pose_people()
@@ -428,7 +431,7 @@ def let_decide(robots: Sequence[RobotControl], around: WorldView, live: NDArray[
             live[list(failures)] = False
         if common is not None and not robot.control.is_due(common):
             continue
-        due = np.flatnonzero(live if common is not None else live & robot.control.is_due(ticks))
+        due = (live if common is not None else live & robot.control.is_due(ticks)).nonzero()[0]
         failures = robot.decide(around, due) if len(due) else {}
         if robot.wanted:
             failures |= move_wanted_joints(robot, around.world)
@@ -450,7 +453,7 @@ def read_sensors(
     ticks, common = around.world.ticks, around.world.environment_time.common_tick
     found: RobotReadings = []
     errors: dict[int, Exception] = {}
-    if not live.any():
+    if not some(live):
         return found, errors
     live = live.copy()
     for robot in robots:
@@ -495,7 +498,7 @@ def robot_contacts(
         found.setdefault(one.environment, []).append(RobotContact(robot, other, one.clearance))
     for control in robots:
         gap = world.wall_clearance(control.agent)
-        for e in np.flatnonzero(gap < 0.0).tolist() if gap.min() < 0.0 else ():
+        for e in np.flatnonzero(gap < 0.0).tolist() if some(gap < 0.0) else ():
             found.setdefault(e, []).append(RobotContact(int(ids[e, control.agent]), WALL, float(gap[e])))
     return {e: tuple(contacts) for e, contacts in found.items()}
 
@@ -504,7 +507,7 @@ def note_arrivals(world: World, robots: Sequence[RobotControl]) -> None:
     """Note which robots are at their goals."""
     position = world.scene.position
     for control in robots:
-        if not control.arrived.all() and may_be_near(position, control.agent, control.goal, control.tolerance):
+        if not every(control.arrived) and may_be_near(position, control.agent, control.goal, control.tolerance):
             control.arrive(position[:, control.agent])
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import kernel
+from crowdbot.core import kernel, some
 from crowdbot.trials import Agent, End, EndCondition, InitialPeople, Spawner, Trial, area
 from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import World
@@ -122,10 +122,10 @@ def note_events(
         collision, success: the numbers of the events.
     """
     arrivals = arrivals_of(robots)
-    open_ = event == 0
-    arrives = bool(arrivals) and all(one.any() for one in arrivals)
-    if not (contacts or arrives) or not open_.any():
+    arrives = bool(arrivals) and all(map(some, arrivals))
+    if not (contacts or arrives):
         return
+    open_ = event == 0
     collided = np.zeros(len(event), dtype=np.bool_)
     collided[list(contacts)] = True
     arrived = np.all(arrivals, axis=0) if arrivals else np.zeros(len(event), dtype=np.bool_)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Clock, FreeClock, InputError, Storage
+from crowdbot.core import Clock, FreeClock, InputError, Storage, every
 from crowdbot.typing import Floats, Ints
 
 
@@ -67,14 +67,14 @@ class EnvironmentTime:
     def common_tick(self) -> int | None:
         """Number of steps since the environments began, None if they do not agree."""
         first = self.first_tick
-        same = len(first) == 1 or bool((first == first[0]).all())
+        same = len(first) == 1 or every(first == first[0])
         return self.clock.tick - int(first[0]) if same else None
 
     @property
     def now(self) -> Any:
         """Time of the scenes [s]: a number if all environments agree, otherwise ``[E]``."""
         begin = self.begin
-        same = len(begin) == 1 or bool((begin == begin[0]).all())
+        same = len(begin) == 1 or every(begin == begin[0])
         return (float(begin[0]) if same else begin) + self.age
 
     def follow(self, clock: Clock | None = None) -> None:

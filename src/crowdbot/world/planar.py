@@ -54,7 +54,7 @@ from .planar_phases import (
     move_people,
     move_robots,
     resolve_overlaps,
-    show_robots,
+    show_crowd,
     step_models,
 )
 from .pushes import PUSH, drift_people, without_drift
@@ -228,7 +228,8 @@ class PlanarWorld(World):
         self.contacts = self._find_contacts(before, after)
         exits = (self.leave_radius, self.exits, self.portals)
         after = exchange_people(before, after, *exits, self._traffic, elapsed)
-        self.scene = show_ghosts(after, self.ghosts, before).replace(external=external)
+        after = show_ghosts(after, self.ghosts, before)
+        self.scene = after if after.external is external else after.replace(external=external)
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
@@ -386,8 +387,7 @@ class PlanarWorld(World):
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scenes before and after the last substep of the crowd."""
-        moving = self._traffic.desired_motion(before, self.heading_jitter)
-        start = show_robots(moving, self.twists, self.robot_margin)
+        start = show_crowd(before, self._traffic, self.heading_jitter, list(self.twists), self.robot_margin)
         resolve, radius = self._finish_motion, before.radius
         step: Callable[[Scene, float], Scene] = self._step_model
         if self.reactions is not None:

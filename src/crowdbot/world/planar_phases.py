@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Twist
+from crowdbot.core import InputError, Scene, Twist, kernel
 from crowdbot.core.outlines import Outlines
 from crowdbot.metrics import step_clearance, step_outline_clearance
 from crowdbot.models import CrowdModel
-from crowdbot.typing import Floats
+from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world.crowd.contact import ContactModel
 from crowdbot.world.crowd.environment_rows import stack_scenes
 from crowdbot.world.crowd.limits import CrowdLimits
 from crowdbot.world.crowd.wall_crossing import ContactSurfaces
 
+from .crowd.agent_arrays import BOOL, FLOAT, dense
 from .crowd.departure import leave_at_goals, leave_in_zone
 from .crowd.people_flow import PeopleFlow
 from .crowd.portal import PortalTransfer, apply_portals
@@ -29,18 +31,69 @@ from .world import Contact
 STILL = Twist()
 
 
-def show_robots(scene: Scene, robots: Iterable[int], margin: float) -> Scene:
-    """Return the scene for the crowd model: it knows which agents are robots, and their radii are larger by a margin.
+def show_crowd(scene: Scene, flow: PeopleFlow, heading_jitter: float, robots: Sequence[int], margin: float) -> Scene:
+    """Return the scene for the crowd model.
 
-    >>> shown = show_robots(Scene.of([[0.0, 0.0], [3.0, 0.0]], radius=0.3), [1], 0.1)
+    People aim at the next point of their path, rotated by a constant angle up to ``heading_jitter`` [rad]. The model
+    knows which agents are robots, and their radii are larger by a margin [m].
+
+    >>> from crowdbot.models import ORCA
+    >>> flow = PeopleFlow.of(scene := Scene.of([[0.0, 0.0], [3.0, 0.0]], radius=0.3), ORCA(), [0], None, None, None, ())
+    >>> shown = show_crowd(scene, flow, 0.0, [1], 0.1)
     >>> shown.radius.tolist(), shown.robot.tolist()
     ([[0.3, 0.4]], [[False, True]])
     """
-    index, wide, robot = list(robots), scene.radius.copy(), np.zeros(scene.shape, dtype=np.bool_)
-    for agent in index:
-        wide[:, agent] += margin
-        robot[:, agent] = True
-    return scene.replace(radius=wide, robot=robot if index else None)
+    moving = flow.guide(scene)
+    shape, wish = moving.shape, moving.preferred_velocity
+    index, pairs = np.array(robots, dtype=np.int64), (*shape, 2)
+    values: tuple[Any, ...] = (
+        dense(moving.position, pairs, FLOAT), dense(moving.goal if wish is None else wish, pairs, FLOAT),
+        dense(moving.radius, shape, FLOAT), dense(moving.active, shape, BOOL), dense(moving.external, shape, BOOL),
+        wish is None, heading_jitter > 0.0, flow.ids, flow.seeds, index, float(margin),
+    )  # fmt: skip
+    out = np.empty(pairs), np.empty(shape), np.empty(shape, dtype=BOOL)
+    for anew in (False, True):
+        whole: Any = (*values, *flow.turns(heading_jitter, anew)[1:], *out)
+        if _show(*whole):
+            break
+    aim, wide, robot = out
+    changes: dict[str, Any] = {"goal" if wish is None else "preferred_velocity": aim} if heading_jitter > 0.0 else {}
+    return moving.replace(**changes, radius=wide, robot=robot if len(index) else None)
+
+
+@kernel
+def _show(
+    position: Floats, aim: Floats, radius: Floats, active: Bools, external: Bools, around: bool, turned: bool,
+    new_ids: Ints, new_seeds: Ints, robots: Ints, margin: float, ids: Ints, seeds: Ints, cos: Floats, sin: Floats,
+    out: Floats, wide: Floats, robot: Bools,
+) -> bool:  # fmt: skip
+    """Write the rotated goals or desired velocities, the radii and who is a robot.
+
+    Return whether the angles belong to the identities and seeds.
+
+    Args:
+        around: whether the aims are points, which turn around the agent.
+        turned: whether aims are rotated.
+    """
+    for e in range(len(active)):
+        if turned and seeds[e] != new_seeds[e]:
+            return False
+        for a in range(active.shape[1]):
+            wide[e, a], robot[e, a] = radius[e, a], False
+            if not turned:
+                continue
+            if ids[e, a] != new_ids[e, a]:
+                return False
+            x, y = aim[e, a, 0], aim[e, a, 1]
+            if active[e, a] and not external[e, a]:
+                cx, cy = (position[e, a, 0], position[e, a, 1]) if around else (0.0, 0.0)
+                dx, dy = x - cx, y - cy
+                x, y = cx + (cos[e, a] * dx - sin[e, a] * dy), cy + (sin[e, a] * dx + cos[e, a] * dy)
+            out[e, a, 0], out[e, a, 1] = x, y
+        for agent in robots:
+            wide[e, agent] += margin
+            robot[e, agent] = True
+    return True
 
 
 def move_people(

@@ -46,25 +46,25 @@ SHORTEST = 1e-3
 """Minimum time horizon [s]; a horizon of 0 has no line."""
 
 
-HORIZONS = ("time_horizon", "time_horizon_walls")
-NEIGHBORS = ("neighbor_distance", "max_neighbors")
+PARAMETERS = ("time_horizon", "time_horizon_walls", "neighbor_distance", "max_neighbors")
+"""Columns of the parameters in kernels."""
 
 
 @kernel(parallel=True)
 def _choose(
-    agents: Floats, walking: Bools, external: Bools, horizons: Floats, near: Neighbors, edges: Edges, dt: float,
+    agents: Floats, walking: Bools, external: Bools, parameters: Floats, near: Neighbors, edges: Edges, dt: float,
     out: Floats,
 ) -> None:  # fmt: skip
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
         _choose_part(
-            part * CHUNK, min((part + 1) * CHUNK, len(out)), agents, walking, external, horizons, near, edges, dt, out
+            part * CHUNK, min((part + 1) * CHUNK, len(out)), agents, walking, external, parameters, near, edges, dt, out
         )
 
 
 @kernel
 def _choose_part(
-    begin: int, end: int, agents: Floats, walking: Bools, external: Bools, horizons: Floats, near: Neighbors,
+    begin: int, end: int, agents: Floats, walking: Bools, external: Bools, parameters: Floats, near: Neighbors,
     edges: Edges, dt: float, out: Floats,
 ) -> None:  # fmt: skip
     # unpack the tuples outside of the loop: each access counts references
@@ -83,8 +83,8 @@ def _choose_part(
         shared = e % len(agent)  # copies of an environment have the same neighbours
         x, y, vx, vy = agents[row, X], agents[row, Y], agents[row, VX], agents[row, VY]
         radius, top = agents[row, RADIUS], agents[row, LIMIT]
-        own = row if len(horizons) > 1 else 0
-        horizon, wall_horizon = horizons[own, 0], horizons[own, 1]
+        own = row if len(parameters) > 1 else 0
+        horizon, wall_horizon = parameters[own, 0], parameters[own, 1]
         reach = wall_horizon * top + radius
         fixed = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
         for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
@@ -122,8 +122,8 @@ def _choose_part(
 @kernel
 def _choose_few(
     position: Floats, velocity: Floats, radius: Floats, own_limit: Floats, limit: Floats, aim: Floats, speed: Floats,
-    active: Bools, visible: Bools, external: Bools, given: bool, dt: float, reciprocal: bool, reach: Floats,
-    horizons: Floats, edges: Edges, order: Rows, out: Floats,
+    active: Bools, visible: Bools, external: Bools, given: bool, dt: float, reciprocal: bool, parameters: Floats,
+    edges: Edges, order: Rows, out: Floats,
 ) -> bool:  # fmt: skip
     """Choose the next velocity of every agent of small crowds in one call; return whether a value is not allowed.
 
@@ -140,8 +140,8 @@ def _choose_few(
         return True
     far, most, others = np.empty(count), np.empty(count, np.int32), external.reshape(count)
     for row in range(count):
-        own = row if len(reach) > 1 else 0
-        far[row], most[row] = reach[own, 0], np.int32(np.rint(reach[own, 1]))
+        own = row if len(parameters) > 1 else 0
+        far[row], most[row] = parameters[own, 2], np.int32(np.rint(parameters[own, 3]))
         widest = max(widest, int(most[row]))
     if reciprocal:
         others = np.zeros(count, np.bool_)
@@ -149,7 +149,7 @@ def _choose_few(
     agent, number = np.empty((count, widest), np.int32), np.empty(count, np.int32)
     compare_rows(begin, count, position.reshape(count, 2), far, most, walking, seen, A, agent, number)
     near: Any = (agent.reshape(E, A, widest), number.reshape(E, A), order)
-    _choose_part(begin, count, agents, walking, others, horizons, near, edges, dt, chosen)
+    _choose_part(begin, count, agents, walking, others, parameters, near, edges, dt, chosen)
     return False
 
 
@@ -207,19 +207,18 @@ class ORCA(CrowdModel):
         if 0 < E * A <= SMALL and A < CROWD and 0.0 < dt < math.inf:
             position, velocity, radius, own_limit, *others = scene.step_arrays()
             limit = own_limit if self.max_speed is None else speed_limit(self.max_speed, scene)
-            out = np.empty((E, A, 2))
-            reach, horizons = parameter_rows(self, NEIGHBORS, shape), parameter_rows(self, HORIZONS, shape)
+            out, parameters = np.empty((E, A, 2)), parameter_rows(self, PARAMETERS, shape)
             given, edges = scene.preferred_velocity is not None, tuple(edges_of(scene.walls))
             values: Any = (
-                position, velocity, radius, own_limit, limit, *others, given, float(dt), self.reciprocal, reach,
-                horizons, edges, IN_ORDER[: E * A], out,
+                position, velocity, radius, own_limit, limit, *others, given, float(dt), self.reciprocal,
+                parameters, edges, IN_ORDER[: E * A], out,
             )  # fmt: skip
             if not _choose_few(*values):
                 return out
         start = begin_rows(scene, dt, self.max_speed)  # raises the error for a wrong value
         near = start.neighbors(self.neighbor_distance, self.max_neighbors)
         external = np.zeros_like(start.external) if self.reciprocal else start.external
-        horizons = parameter_rows(self, HORIZONS, scene.shape)
-        rows = start.agents, start.walking, external, horizons, near, edges_of(scene.walls), float(dt)
+        parameters = parameter_rows(self, PARAMETERS, scene.shape)
+        rows = start.agents, start.walking, external, parameters, near, edges_of(scene.walls), float(dt)
         launch(_choose, _choose_part, start.out, *rows)
         return start.velocity

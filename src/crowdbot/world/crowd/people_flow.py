@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Storage, kernel
+from crowdbot.core import InputError, Scene, Storage
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
-from crowdbot.typing import Bools, Floats
+from crowdbot.typing import Floats
 
-from .agent_arrays import BOOL, FLOAT, dense
 from .arrivals import Arrivals
 from .journey import JourneyAssignment
 from .person_random import uniform
@@ -22,6 +21,11 @@ from .routing import WAY, Router, fresh
 from .source import PeopleSource
 
 Numbers = NDArray[np.int64]
+
+
+HeadingTurns = tuple[float, Numbers, Numbers, Floats, Floats]
+"""Constant angles between the directions of people and those to their goals: the largest [rad], identities ``[E, A]``
+and seeds ``[E]`` to which they belong, and their cosine and sine ``[E, A]``."""
 
 
 @dataclass
@@ -44,7 +48,7 @@ class PeopleFlow:
     journeys: JourneyAssignment | None
     arrivals: Arrivals | None
     mixture: Mixture | None
-    _turns: tuple[float, Numbers, Numbers, Floats, Floats] | None = field(default=None, init=False, repr=False)
+    _turns: HeadingTurns | None = field(default=None, init=False, repr=False)
     storage = Storage(constants=("router", "journeys", "mixture"), shared=("_turns",))
 
     @classmethod
@@ -109,11 +113,9 @@ class PeopleFlow:
             scene = scene.replace(memory=self.router.guide(scene, self._routed(scene)).memory)
         return scene
 
-    def desired_motion(self, scene: Scene, heading_jitter: float) -> Scene:
-        """Return the scene with the next point of each path as the goal, rotated by the heading jitter."""
-        if self.router is not None:
-            scene = self.router.guide(scene, self._routed(scene))
-        return _rotate_goals(scene, *self._turn(heading_jitter)) if heading_jitter > 0.0 else scene
+    def guide(self, scene: Scene) -> Scene:
+        """Return the scene with the next point of each path as the goal."""
+        return scene if self.router is None else self.router.guide(scene, self._routed(scene))
 
     def advance(self, scene: Scene, time: float | Floats) -> Scene:
         """Return the scene at a time [s], one or ``[E]``, after journeys have advanced and new people have entered."""
@@ -147,21 +149,23 @@ class PeopleFlow:
             return np.greater(scene.active, scene.external)
         return self.journeys.walks_on_routes(scene)
 
-    def _turn(self, heading_jitter: float) -> tuple[Floats, Floats]:
-        """Return cosine and sine of the constant angle ``[E, A]`` by which each person deviates from the goal."""
-        known = self._turns
+    def turns(self, heading_jitter: float, anew: bool = False) -> HeadingTurns:
+        """Return the constant angles by which people deviate from their goals, those known unless ``anew``."""
+        known, none = self._turns, np.full(self.ids.shape, np.nan)
+        if heading_jitter == 0.0:
+            return heading_jitter, self.ids, self.seeds, none, none
         if known is None or known[0] != heading_jitter or known[1].shape != self.ids.shape:
-            none = np.full(self.ids.shape, np.nan)
-            self._turns = known = (heading_jitter, self.ids - 1, self.seeds.copy(), none, none.copy())
+            known, anew = (heading_jitter, self.ids - 1, self.seeds, none, none), True
         _, ids, seeds, cos, sin = known
-        if not _is_same(ids, self.ids, seeds, self.seeds):
+        if anew:
             new = (ids != self.ids) | (seeds != self.seeds)[:, None]
             seed = np.broadcast_to(self.seeds[:, None], ids.shape)[new]
             angle = heading_jitter * (2.0 * uniform(seed, self.ids[new], "symmetry") - 1.0)
-            ids, cos, sin = self.ids.copy(), cos.copy(), sin.copy()
+            cos, sin = cos.copy(), sin.copy()
             cos[new], sin[new] = np.cos(angle), np.sin(angle)
-            self._turns = (heading_jitter, ids, self.seeds.copy(), cos, sin)
-        return cos, sin
+            known = (heading_jitter, self.ids.copy(), self.seeds.copy(), cos, sin)
+        self._turns = known
+        return known
 
 
 def environment_seeds(seed: int | Sequence[int], count: int) -> list[int]:
@@ -187,43 +191,3 @@ def _identities(ids: Any, shape: tuple[int, int]) -> Numbers:
     if who.dtype.kind not in "iu" or np.any(different[:, 1:] == different[:, :-1]):
         raise InputError("ids must be integers, unique in each environment")
     return who.astype(np.int64)
-
-
-@kernel
-def _is_same(ids: Numbers, new_ids: Numbers, seeds: Numbers, new_seeds: Numbers) -> bool:
-    """Return whether identities ``[E, A]`` and seeds ``[E]`` are equal."""
-    for e in range(len(ids)):
-        if seeds[e] != new_seeds[e]:
-            return False
-        for a in range(ids.shape[1]):
-            if ids[e, a] != new_ids[e, a]:
-                return False
-    return True
-
-
-@kernel
-def _rotate(
-    active: Bools, external: Bools, center: Floats, cos: Floats, sin: Floats, value: Floats, out: Floats
-) -> None:
-    for e in range(len(active)):
-        for a in range(active.shape[1]):
-            x, y = value[e, a, 0], value[e, a, 1]
-            out[e, a, 0], out[e, a, 1] = x, y
-            if active[e, a] and not external[e, a]:
-                cx, cy = center[e, a, 0], center[e, a, 1]
-                dx, dy = x - cx, y - cy
-                out[e, a, 0] = cx + (cos[e, a] * dx - sin[e, a] * dy)
-                out[e, a, 1] = cy + (sin[e, a] * dx + cos[e, a] * dy)
-
-
-def _rotate_goals(scene: Scene, cos: Floats, sin: Floats) -> Scene:
-    """Return the scene with goals, or preferred velocities, rotated around each agent."""
-    shape = scene.shape
-    pairs = (*shape, 2)
-    out, wish = np.empty(pairs), scene.preferred_velocity
-    own = (dense(scene.active, shape, BOOL), dense(scene.external, shape, BOOL))
-    if wish is not None:
-        _rotate(*own, np.zeros(pairs), cos, sin, dense(wish, pairs, FLOAT), out)
-        return scene.replace(preferred_velocity=out)
-    _rotate(*own, dense(scene.position, pairs, FLOAT), cos, sin, dense(scene.goal, pairs, FLOAT), out)
-    return scene.replace(goal=out)
