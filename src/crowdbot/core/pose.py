@@ -119,11 +119,11 @@ class SpatialPose:
         """Rotation matrices ``[E, 3, 3]``; the columns are the axes of the object in the world frame."""
         turn = self.rotation / np.sqrt((self.rotation**2).sum(axis=-1, keepdims=True))
         w, x, y, z = turn.T
-        found = np.empty((len(turn), 3, 3))
-        found[:, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1)
-        found[:, 1] = np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1)
-        found[:, 2] = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
-        return found
+        result = np.empty((len(turn), 3, 3))
+        result[:, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1)
+        result[:, 1] = np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1)
+        result[:, 2] = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+        return result
 
     @property
     def heading(self) -> Floats:

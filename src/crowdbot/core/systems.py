@@ -80,8 +80,8 @@ def peak_memory() -> float:
     else:
         import resource
 
-        if STATUS.exists() and (found := re.search(r"VmHWM:\s+(\d+)", STATUS.read_text(encoding="utf-8"))):
-            return float(found[1]) * 2**10  # getrusage would count the memory of the parent at the fork
+        if STATUS.exists() and (match := re.search(r"VmHWM:\s+(\d+)", STATUS.read_text(encoding="utf-8"))):
+            return float(match[1]) * 2**10  # getrusage would count the memory of the parent at the fork
         peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         return float(peak if sys.platform == "darwin" else peak * 2**10)
 

@@ -215,12 +215,12 @@ class CrowdTask:
         outcomes = [""] * self.count
         for e in np.flatnonzero(running.may_end() & ~self.ended).tolist():
             outcomes[e] = running.outcome(e) or ""
-        success, collision = (np.array([one == name for one in outcomes]) for name in ("success", "collision"))
-        over = np.array([one != "" for one in outcomes])
+        success, collision = (np.array([outcome == name for outcome in outcomes]) for name in ("success", "collision"))
+        over = np.array([outcome != "" for outcome in outcomes])
         distance = self.port.goal_distance()
         rewards = self.reward.values(self.port.clearance(), success, collision, self._distance - distance, self.dt)
         rewards[self.ended] = 0.0
         self._distance = distance
         self.ended |= over
-        terminated = success | collision | np.array([one == "fall" for one in outcomes])
+        terminated = success | collision | np.array([outcome == "fall" for outcome in outcomes])
         return TaskStep(self.port.observe(), rewards, terminated, over & ~terminated, tuple(outcomes))

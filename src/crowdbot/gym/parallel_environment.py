@@ -69,7 +69,7 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
             raise InputError(f"trial {chosen.name!r} has no robot")
         seen = ObservationForm(observation) if isinstance(observation, str) else observation
         acts = ActionForm(action) if isinstance(action, str) else action
-        names = [one.name for one in chosen.robots]
+        names = [robot.name for robot in chosen.robots]
         self.ports = {name: RobotPort(chosen, name, seen, acts) for name in names}
         if len({port.ticks for port in self.ports.values()}) > 1:
             periods = ", ".join(f"{name} {port.dt:g} s" for name, port in self.ports.items())
@@ -137,7 +137,7 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
             for name, port in self.ports.items():
                 port.order(twists[name])
             running.advance()
-            touching |= {one for contact in running.contacts() for one in (contact.robot, contact.other)}
+            touching |= {item for contact in running.contacts() for item in (contact.robot, contact.other)}
             for port in self.ports.values():
                 port.keep_scans()
             if running.outcome() is not None:

@@ -23,10 +23,10 @@ Arrays = dict[str, NDArray[np.float32]]
 def free_robots(trial: Trial, names: list[str]) -> Trial:
     """Return the trial with robots that take orders from outside instead of the decisions of their navigators."""
     robots = [
-        dataclasses.replace(one, navigator=ExternalNavigator(timeout=math.ceil(2.0 * one.control_period) + 1.0))
-        if one.name in names
-        else one
-        for one in trial.robots
+        dataclasses.replace(robot, navigator=ExternalNavigator(timeout=math.ceil(2.0 * robot.control_period) + 1.0))
+        if robot.name in names
+        else robot
+        for robot in trial.robots
     ]
     return dataclasses.replace(trial, robots=tuple(robots))
 
@@ -50,7 +50,7 @@ class RobotPort:
     """
 
     def __init__(self, trial: Trial, robot: str, observation: ObservationForm, action: ActionForm) -> None:
-        names = [one.name for one in trial.robots]
+        names = [robot.name for robot in trial.robots]
         if robot not in names:
             raise InputError(f"trial {trial.name!r} has no robot {robot!r}; it has {', '.join(names)}")
         self.name, self.observation, self.action = robot, observation, action
@@ -116,9 +116,9 @@ class RobotPort:
         if self.scanner is None or not self.observation.with_scan:
             return
         control = self.control
-        for robot, one in self.simulation.readings:
-            if robot is control and one.name == self.scanner.name and isinstance(one.reading, Scan):
-                self._scan[one.environments] = np.fmin(one.reading.ranges, self.longest)
+        for robot, item in self.simulation.readings:
+            if robot is control and item.name == self.scanner.name and isinstance(item.reading, Scan):
+                self._scan[item.environments] = np.fmin(item.reading.ranges, self.longest)
 
     def twists(self, actions: Floats) -> Floats:
         """Return the commands ``[E, 3]`` of actions ``[E, 2]``.

@@ -89,11 +89,11 @@ def occupancy_grids(batch: ObservationBatch, cells: int, cell: float) -> Floats:
     >>> occupancy_grids(batch, 4, 0.5).sum()
     np.float64(0.0)
     """
-    found = np.zeros((len(batch), cells, cells))
+    result = np.zeros((len(batch), cells, cells))
     people = batch.people
     walls = np.require(batch.walls.segments(), np.float64, ["C", "W"])
-    _paint(batch.pose, people.position, people.radius, people.seen, walls, cell, found)
-    return found
+    _paint(batch.pose, people.position, people.radius, people.seen, walls, cell, result)
+    return result
 
 
 @kernel
@@ -199,14 +199,14 @@ class ObservationForm:
 
     def shapes(self, beams: int) -> dict[str, tuple[int, ...]]:
         """Return the shape of each part for one environment."""
-        found: dict[str, tuple[int, ...]] = {"robot": (len(ROBOT_VALUES),)}
+        result: dict[str, tuple[int, ...]] = {"robot": (len(ROBOT_VALUES),)}
         if self.with_people:
-            found["people"] = (self.max_people, len(PERSON_VALUES))
+            result["people"] = (self.max_people, len(PERSON_VALUES))
         if self.with_scan:
-            found["scan"] = (beams,)
+            result["scan"] = (beams,)
         if self.form == "occupancy":
-            found["occupancy"] = (self.cells, self.cells)
-        return found
+            result["occupancy"] = (self.cells, self.cells)
+        return result
 
     def arrays(self, batch: ObservationBatch, scan: Floats | None) -> Arrays:
         """Return the parts ``[N, ...]`` as float32.
@@ -283,6 +283,6 @@ def _people(batch: ObservationBatch, count: int) -> Floats:
         np.where(there, clearance[rows, order], 0.0),
         np.ones_like(there, dtype=np.float64),
     ]
-    found = np.zeros((len(batch), count, len(PERSON_VALUES)))
-    found[:, : order.shape[1]] = np.where(there[..., None], np.stack(values, axis=-1), 0.0)
-    return found
+    result = np.zeros((len(batch), count, len(PERSON_VALUES)))
+    result[:, : order.shape[1]] = np.where(there[..., None], np.stack(values, axis=-1), 0.0)
+    return result

@@ -78,7 +78,7 @@ class CrowdVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[np.flo
             given = [None] * self.num_envs if seed is None else list(seed)
         if len(given) != self.num_envs:
             raise InputError(f"there are {len(given)} seeds for {self.num_envs} environments")
-        seeds = [self._draw() if one is None else int(one) for one in given]
+        seeds = [self._draw() if item is None else int(item) for item in given]
         return self.task.reset(seeds), {"seed": np.array(seeds)}
 
     def step(self, actions: NDArray[np.float32]) -> tuple[Observations, NDArray[np.float64], Any, Any, dict[str, Any]]:
@@ -100,8 +100,8 @@ class CrowdVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[np.flo
         return int(self.np_random.integers(MOST_SEEDS))
 
     def _info(self, outcomes: Sequence[str]) -> dict[str, Any]:
-        ended = np.array([one != "" for one in outcomes])
+        ended = np.array([outcome != "" for outcome in outcomes])
         if not ended.any():
             return {}
-        success = np.array([one == "success" for one in outcomes])
+        success = np.array([outcome == "success" for outcome in outcomes])
         return {"outcome": np.array(outcomes), "_outcome": ended, "is_success": success, "_is_success": ended}

@@ -154,7 +154,8 @@ def read_forces(time: float, message: Any) -> list[ContactForceRecord]:
     return [
         ContactForceRecord(
             time, force.first, force.second, force.first_part, force.limb, force.part, force.force,
-            (force.vector.x, force.vector.y, force.vector.z), force.depth, (force.point.x, force.point.y, force.point.z),
+            (force.vector.x, force.vector.y, force.vector.z), force.depth,
+            (force.point.x, force.point.y, force.point.z),
         )
         for force in message.forces
     ]  # fmt: skip

@@ -48,19 +48,19 @@ class DoorOrder(Order):
 def check_doors(old: Sequence[Door], new: Sequence[Door]) -> None:
     """Raise :class:`InputError` if something else changes than whether a door is open."""
     same = len(old) == len(new) and all(
-        dataclasses.replace(two, open=one.open) == one for one, two in zip(old, new, strict=True)
+        dataclasses.replace(two, open=item.open) == item for item, two in zip(old, new, strict=True)
     )
     if not same:
         raise InputError("of the doors, only open can change while a simulation runs")
-    for one, two in zip(old, new, strict=True):
-        if one.open != two.open and one.opening != "order":
+    for item, two in zip(old, new, strict=True):
+        if item.open != two.open and item.opening != "order":
             raise InputError(
-                f'open of door {one.name!r} cannot change: it opens by {one.opening}; take opening="order"'
+                f'open of door {item.name!r} cannot change: it opens by {item.opening}; take opening="order"'
             )
 
 
 def order_doors(world: Any, old: Sequence[Door], new: Sequence[Door]) -> None:
     """Open and close the doors whose value in the trial changes."""
-    changed = {two.name: two.open for one, two in zip(old, new, strict=True) if one.open != two.open}
+    changed = {two.name: two.open for item, two in zip(old, new, strict=True) if item.open != two.open}
     for own in worlds_of(world) if changed else ():
         own.doors.wanted = {**own.doors.wanted, **changed}

@@ -159,7 +159,7 @@ def _rows_of_reading(told: SensorReadings) -> list[bytes | Bytes] | None:
         return None
     if isinstance(reading.time, np.ndarray) and reading.time.dtype != np.float64:
         return None
-    found: list[bytes | Bytes] = []
+    rows_of_reading: list[bytes | Bytes] = []
     for field in dataclasses.fields(reading):
         value = getattr(reading, field.name)
         if field.name == "hit":
@@ -167,8 +167,8 @@ def _rows_of_reading(told: SensorReadings) -> list[bytes | Bytes] | None:
         part = _bytes(value) if field.name in type(reading).shared_fields else _field_rows(value, count)
         if part is None:
             return None
-        found.append(part)
-    return found
+        rows_of_reading.append(part)
+    return rows_of_reading
 
 
 def _in_order(told: SensorReadings, agents: int) -> bool:

@@ -34,7 +34,7 @@ class OwnSource(Protocol):
 
 def has_own_source(trial: Trial) -> bool:
     """Return whether a navigator of the trial opens the source of its orders itself."""
-    return any(isinstance(one.navigator, ExternalNavigator) and one.navigator.source for one in trial.robots)
+    return any(isinstance(robot.navigator, ExternalNavigator) and robot.navigator.source for robot in trial.robots)
 
 
 def open_own_sources(simulation: Any) -> tuple[OwnSource, ...]:
@@ -58,8 +58,8 @@ def open_own_sources(simulation: Any) -> tuple[OwnSource, ...]:
             module, _, function = navigator.source.partition(":")
             opened.append(getattr(importlib.import_module(module), function)(navigator, tuple(names), simulation))
     except BaseException:
-        for one in opened:
-            one.close()
+        for item in opened:
+            item.close()
         raise
     return tuple(opened)
 

@@ -308,19 +308,19 @@ class MountedSensor:
         """Return an independent sensor with some environments."""
         other = tree.take(self, environments)
         other.state = take_state_rows(self.state, environments)
-        other.waiting = [part for one in self.waiting if (part := one.matching(environments)) is not None]
+        other.waiting = [part for item in self.waiting if (part := item.matching(environments)) is not None]
         return other
 
     def put(self, environments: Ints, other: MountedSensor) -> None:
         """Replace some environments by those of another simulation of the same trial."""
         state = put_state_rows(self.state, environments, other.state, len(self.rngs))
         fresh = np.isin(np.arange(len(self.rngs)), environments)
-        waiting = [part for one in self.waiting if (part := one.without(fresh)) is not None]
-        waiting += [one.renumber(environments) for one in other.waiting]
+        waiting = [part for item in self.waiting if (part := item.without(fresh)) is not None]
+        waiting += [item.renumber(environments) for item in other.waiting]
         both = (self, other)
         if seen := [sensor.seen for sensor in both if sensor.seen is not None]:
             for sensor in both:
-                sensor._seen_agents(max(one.shape[1] for one in seen))
+                sensor._seen_agents(max(item.shape[1] for item in seen))
         if any(sensor.moved is not None for sensor in both):
             for sensor in both:
                 sensor.move(slice(None), sensor.placed if sensor.moved is None else sensor.moved)

@@ -267,7 +267,7 @@ def _robot_control(simulation: Simulation, old: RobotControl, robot: RobotSpec, 
 def _faults(simulation: Simulation, old: RobotControl, robot: RobotSpec) -> FaultState | None:
     """Return the faults of a robot that continues; random numbers go on where the kinds of faults are the same."""
     new = FaultState.of(robot, simulation.seeds)
-    kinds = [[type(spec.fault) for spec in one.faults] for one in (old.robot, robot)]
+    kinds = [[type(spec.fault) for spec in item.faults] for item in (old.robot, robot)]
     if new is not None and old.faults is not None and kinds[0] == kinds[1]:
         new.draws, new.rngs = old.faults.draws, old.faults.rngs
     return new

@@ -220,11 +220,11 @@ class RobotControl:
 
     def _track_people(self, around: WorldView, environments: Ints) -> list[PerceivedPeople]:
         """Return the people tracked in the latest readings, for a robot that tracks people."""
-        found = []
+        perceived_peoples = []
         for e in environments.tolist() if self.perceived else ():
             walls = (around.flat_of(e) if around.world.has_own_walls else around.flat).walls
-            found.append(track_readings(self.perceived[e], self.sensors, e, walls))
-        return found
+            perceived_peoples.append(track_readings(self.perceived[e], self.sensors, e, walls))
+        return perceived_peoples
 
     def _perceive(self, around: WorldView, environments: Ints, perceived: list[PerceivedPeople]) -> ObservationBatch:
         """Return the observations without paths and tracks."""
@@ -332,8 +332,8 @@ class RobotControl:
     def _remember(self, environments: Ints, known: _Known) -> None:
         if self.planner is not None:
             self.path[environments] = known.path
-        for e, one in zip(environments.tolist() if known.perceived else (), known.perceived, strict=False):
-            self.perceived[e] = one
+        for e, item in zip(environments.tolist() if known.perceived else (), known.perceived, strict=False):
+            self.perceived[e] = item
         if self.tracks:
             whole = len(environments) == len(self.tracks)
             self.tracks = known.tracks if whole else self.tracks.put(environments, known.tracks)
@@ -386,8 +386,8 @@ class RobotControl:
             mine.put(environments, new)
         for k, e in enumerate(environments.tolist()):
             self.memories[e] = other.memories[k]
-        for e, one in zip(environments.tolist(), other.perceived, strict=False):
-            self.perceived[e] = one
+        for e, item in zip(environments.tolist(), other.perceived, strict=False):
+            self.perceived[e] = item
         if self.tracks:
             self.tracks = self.tracks.put(environments, other.tracks)
 
@@ -452,7 +452,7 @@ def track_readings(before: PerceivedPeople, sensors: Sequence[MountedSensor], en
     new: list[tuple[float, Detector, Reading]] = []
     for sensor in sensors:
         reading = sensor.reading(environment)
-        detector = next((one for one in DETECTORS if isinstance(reading, one.reads)), None)
+        detector = next((item for item in DETECTORS if isinstance(reading, item.reads)), None)
         if reading is not None and detector is not None and not float(np.max(reading.time)) <= last:
             new.append((float(np.max(reading.time)), detector, reading))
     for time, detector, reading in sorted(new, key=lambda row: row[0]):

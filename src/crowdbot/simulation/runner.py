@@ -78,12 +78,12 @@ def simulate_seeds(trial: Trial, seeds: Sequence[int], progress: Progress | None
 
 def _one_by_one(trials: Sequence[Trial], seeds: Sequence[int]) -> tuple[Episode, ...]:
     """Run each trial alone, one after the other."""
-    found: list[Episode] = []
+    episodes: list[Episode] = []
     for trial, seed in zip(trials, seeds, strict=True):
-        found += [simulate(trial, int(seed))]
-        if found[-1].outcome == "interrupted":
+        episodes += [simulate(trial, int(seed))]
+        if episodes[-1].outcome == "interrupted":
             raise KeyboardInterrupt
-    return tuple(found)
+    return tuple(episodes)
 
 
 def _episodes(

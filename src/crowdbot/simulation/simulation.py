@@ -125,7 +125,7 @@ class Simulation:
         self._set_around()
         count, first = len(self.seeds), trial.people
         self.robots = [
-            RobotControl.of(trial, one, first + k, self.world, self.seeds) for k, one in enumerate(trial.robots)
+            RobotControl.of(trial, robot, first + k, self.world, self.seeds) for k, robot in enumerate(trial.robots)
         ]
         self._template.set_goals(self.robots)
         self.former_robots: list[RobotControl] = []
@@ -304,9 +304,9 @@ class Simulation:
         new.begin()
         kept = np.zeros(self.count, dtype=np.bool_)
         kept[index] = True
-        old = [(robot, told) for robot, one in self.readings if (told := one.without(kept)) is not None]
+        old = [(robot, told) for robot, item in self.readings if (told := item.without(kept)) is not None]
         robots = dict(zip(map(id, new.robots), self.robots, strict=True))
-        fresh = [(robots[id(robot)], one.renumber(index)) for robot, one in new.readings]
+        fresh = [(robots[id(robot)], item.renumber(index)) for robot, item in new.readings]
         self.put(index, new)
         self.readings = old + fresh
 
@@ -451,25 +451,25 @@ def read_sensors(
         live: ``[E]`` environments that sense.
     """
     ticks, common = around.world.ticks, around.world.environment_time.common_tick
-    found: RobotReadings = []
+    robot_readings: RobotReadings = []
     errors: dict[int, Exception] = {}
     if not some(live):
-        return found, errors
+        return robot_readings, errors
     live = live.copy()
     for robot in robots:
-        for sensor in [one for one in robot.sensors if common is None or one.has_work(common)]:
+        for sensor in [sensor for sensor in robot.sensors if common is None or sensor.has_work(common)]:
             able, late = (live, None) if robot.faults is None else robot.faults.measuring(sensor, around.world, live)
             arrived, failures = sensor.work(ticks, able, robot.agent, around, late)
-            found += [(robot, readings) for readings in arrived]
+            robot_readings += [(robot, readings) for readings in arrived]
             for e, error in failures:
                 errors[e], live[e] = error, False
         if robot.faults is not None:
             robot.faults.clear_blind(robot.sensors, around.world.times)
     if errors:
         failed = ~live
-        rest = ((robot, readings.without(failed)) for robot, readings in found)
-        found = [(robot, readings) for robot, readings in rest if readings is not None]
-    return found, errors
+        rest = ((robot, readings.without(failed)) for robot, readings in robot_readings)
+        robot_readings = [(robot, readings) for robot, readings in rest if readings is not None]
+    return robot_readings, errors
 
 
 class _Ended(Protocol):
@@ -493,9 +493,9 @@ def robot_contacts(
         ids: ``[E, A]`` identities before the step, since an index may be reused.
     """
     found: dict[int, list[RobotContact]] = {}
-    for one in world.contacts:
-        robot, other = ids[one.environment, [one.robot, one.other]].tolist()
-        found.setdefault(one.environment, []).append(RobotContact(robot, other, one.clearance))
+    for contact in world.contacts:
+        robot, other = ids[contact.environment, [contact.robot, contact.other]].tolist()
+        found.setdefault(contact.environment, []).append(RobotContact(robot, other, contact.clearance))
     for control in robots:
         gap = world.wall_clearance(control.agent)
         for e in np.flatnonzero(gap < 0.0).tolist() if some(gap < 0.0) else ():
@@ -522,7 +522,7 @@ def new_events(events: Sequence[Ended], told: NDArray[np.int64], environment: in
     """
     if not events:
         return ()
-    over = sorted((one for one in events if one.end < until), key=lambda one: (one.end, one.begin))
+    over = sorted((event for event in events if event.end < until), key=lambda event: (event.end, event.begin))
     new, told[environment] = over[int(told[environment]) :], len(over)
     return tuple(new)
 

@@ -108,7 +108,7 @@ class SimulationRun:
         self.simulation, self.sinks = simulation, sinks
         own = () if sources else open_own_sources(simulation)
         self.sources: Sequence[OrderSource] = sources or own
-        self._closing = [weakref.finalize(self, one.close) for one in own]
+        self._closing = [weakref.finalize(self, item.close) for item in own]
         self._ticks, self._stop = ticks, stop or StopRequest()
         self._schedule = simulation.world.clock.schedule(simulation.trial.recording.period)
         self._numbers = list(range(simulation.count))
@@ -222,7 +222,7 @@ class SimulationRun:
                 raise InputError(
                     f"the run is at {self.simulation.tick * step_ns / 1e9:g} s; to go back it needs keyframes"
                 )
-            kept = [(tick, one) for tick, one in self._keyframes if tick <= target]
+            kept = [(tick, item) for tick, item in self._keyframes if tick <= target]
             self.restore(kept[-1][1])
             self._keyframes = kept
             self._repeat(target)
@@ -386,5 +386,5 @@ class SimulationRun:
             return
         for k, e in enumerate(index.tolist()):
             frame = self.simulation.record(e, bool(due[k]), last, orders.get(e, ()), numbers[k])
-            for one in self.sinks:
-                one.take(frame)
+            for item in self.sinks:
+                item.take(frame)

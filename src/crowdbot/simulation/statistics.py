@@ -80,7 +80,7 @@ class EpisodeStatistics:
             if isinstance(order, GoalOrder) and order.tolerance is not None:
                 names = [robot.name for robot in self.trial.robots]
                 self.travels[names.index(order.robot)].tolerance = float(order.tolerance)
-        self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
+        self._touching |= {who for touche in frame.touches for who in (touche.robot, touche.other)}
         self.collisions += frame.collisions
         self.falls += frame.falls
         if frame.due:
@@ -104,10 +104,14 @@ class EpisodeStatistics:
         found: dict[str, float] = {}
         for k, robot in enumerate(self.trial.robots if self.trial.world == "physics" else ()):
             body = ("robot", self.robot_ids[k])
-            own = [one for one in self.collisions if tuple(one.first) == body and one.second.kind == "person"]
+            own = [
+                collision
+                for collision in self.collisions
+                if tuple(collision.first) == body and collision.second.kind == "person"
+            ]
             values = impact_metrics(own)
             if self.trial.balance:
-                caused = [one for one in self.falls if (one.cause, one.causer) == body]
+                caused = [fall for fall in self.falls if (fall.cause, fall.causer) == body]
                 values |= fall_metrics(self.falls, caused)
                 values["max_severity"] = max(values["max_severity"], values["fall_severity"])
             found |= {(key if k == 0 else f"{robot.name}.{key}"): value for key, value in values.items()}

@@ -132,7 +132,7 @@ class StepBatch:
             scene.goal[index][:, [robot.agent for robot in robots]],
             twists,
             commands,
-            tuple(one for one in readings if (one.rows >= 0).any()),
+            tuple(reading for reading in readings if (reading.rows >= 0).any()),
             touches,
             forces,
             collisions,

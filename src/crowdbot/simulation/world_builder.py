@@ -150,12 +150,12 @@ def model_of(trial: Trial, people: InitialPeople, agents: int, seed: int) -> Cro
 
 def _values(people: InitialPeople, members: Iterable[int]) -> dict[int, dict[str, float]]:
     """Return the individual parameters of people, if any."""
-    found = {}
+    values = {}
     for a in members:
         owner = people.owners[people.owner[a]] if a < len(people) else None
         if isinstance(owner, Agent) and owner.parameters:
-            found[a] = {one.name.replace("-", "_"): one.value for one in owner.parameters}
-    return found
+            values[a] = {parameter.name.replace("-", "_"): parameter.value for parameter in owner.parameters}
+    return values
 
 
 def script_of(people: InitialPeople) -> ReplayedPeople | None:
@@ -165,7 +165,8 @@ def script_of(people: InitialPeople) -> ReplayedPeople | None:
     first = len(people) - len(people.walks)
     owners = [people.owners[k] for k in people.owner[first:].tolist()]
     release = [
-        one.reaction_distance if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners
+        owner.reaction_distance if isinstance(owner, RecordedPeople) and owner.mode == "reactive" else 0.0
+        for owner in owners
     ]
     tracks = [ReplayedTrack(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
     return ReplayedPeople(tracks, release)

@@ -167,7 +167,7 @@ class WorldTemplate:
 
     @functools.cached_property
     def _recorded(self) -> list[tuple[Any, Any]]:
-        return [(one, one.walks(self.trial.duration)) for one in self.trial.recorded]
+        return [(item, item.walks(self.trial.duration)) for item in self.trial.recorded]
 
     @functools.cached_property
     def _plan(self) -> PlacementPlan:
@@ -179,7 +179,7 @@ class WorldTemplate:
         """Whether the model depends on the seed."""
         trial = self.trial
         drawn = isinstance(trial.crowd, Crowds | RandomizedModel) or trial.crowd.is_individual
-        return drawn or any(isinstance(one, Agent) and one.parameters for one in trial.agents)
+        return drawn or any(isinstance(agent, Agent) and agent.parameters for agent in trial.agents)
 
     @functools.cached_property
     def _shared(self) -> dict[str, Any]:
@@ -209,17 +209,17 @@ class WorldTemplate:
         """Return the people of some seeds; a single seed is placed faster than the kernel is loaded."""
         trial = self.trial
         if self._begun + len(seeds) > 1 and not trial.avatars:
-            found = self._plan.place(seeds)
-            if isinstance(found, PeopleBatch):
-                return found
-            problems = found[1]
+            people_batch = self._plan.place(seeds)
+            if isinstance(people_batch, PeopleBatch):
+                return people_batch
+            problems = people_batch[1]
         else:
             who = (trial.agents, self._recorded, trial.avatars)
             rows = [place(trial.stage, trial.spawners, trial.robots, seed, *who) for seed in seeds]
             problems = next((wrong for _, wrong in rows if wrong), [])
             if not problems:
                 return PeopleBatch.of([people for people, _ in rows])
-        what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
+        what = ((element_word(type(item)), item.name, sentence) for item, sentence in problems)
         raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
 
     def _spare(self, seeds: Sequence[int], first: int) -> Ints:

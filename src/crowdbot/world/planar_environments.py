@@ -179,7 +179,7 @@ def _set_state(world: PlanarWorld, state: dict[str, Any], models: list[Any] | No
     for name, value in state.items():
         setattr(world, name, value)
     world.ids = world._traffic.ids
-    world.contacts = tuple(one._replace(environment=e) for e, row in enumerate(state["contacts"]) for one in row)
+    world.contacts = tuple(item._replace(environment=e) for e, row in enumerate(state["contacts"]) for item in row)
     world.scene = with_common_time(world.scene, scene)
     world._previous = with_common_time(world._previous, scene).replace(walls=world.scene.walls)
     if models is not None:
@@ -192,8 +192,8 @@ def _aligned_twists(worlds: Sequence[PlanarWorld], robot: int) -> list[Twists]:
     kind = max(map(type, twists), key=lambda one: len(dataclasses.fields(one)))
     names = [field.name for field in dataclasses.fields(kind) if field.init]
     return [
-        one if type(one) is kind else kind(*(getattr(one, name, np.zeros_like(one.forward)) for name in names))
-        for one in twists
+        twist if type(twist) is kind else kind(*(getattr(twist, name, np.zeros_like(twist.forward)) for name in names))
+        for twist in twists
     ]
 
 
@@ -205,10 +205,10 @@ def _aligned_delays(worlds: Sequence[PlanarWorld]) -> list[dict[int, tuple[tuple
         longest = max((pending for pending, _ in delays), key=len)
         for row, world, (pending, now) in zip(rows, worlds, delays, strict=True):
             count = len(world.slots)
-            commands = [Twist()] * (len(longest) - len(pending)) + [one.command for one in pending]
+            commands = [Twist()] * (len(longest) - len(pending)) + [item.command for item in pending]
             both = zip(longest, commands, strict=True)
             row[robot] = (
-                tuple(Pending(one.wait, Twists.of(command, count)) for one, command in both),
+                tuple(Pending(item.wait, Twists.of(command, count)) for item, command in both),
                 Twists.of(now, count),
             )
     return rows

@@ -142,7 +142,7 @@ def step_models(
     if together is not None:
         return together.step(scene, dt, rngs[0])
     alone = (scene.environments([e]).replace(walls=scene.walls) for e in range(len(models)))
-    rows = [model.step(one, dt, rng) for model, one, rng in zip(models, alone, rngs, strict=True)]
+    rows = [model.step(item, dt, rng) for model, item, rng in zip(models, alone, rngs, strict=True)]
     return stack_scenes(rows).replace(walls=scene.walls)
 
 
@@ -232,7 +232,7 @@ def find_contacts(
     >>> find_contacts(start, start.replace(position=[[[0.5, 0.0], [1.0, 0.0]]]), [0], ())[0].other
     1
     """
-    found: list[Contact] = []
+    contacts: list[Contact] = []
     for number, robot in enumerate(robots):
         if outlines is None:
             gap, least = step_clearance(before.position, after.position, after.radius, after.active, robot)
@@ -243,8 +243,8 @@ def find_contacts(
             )  # fmt: skip
         if least < 0.0 and robot not in ghosts:
             gap[:, list(robots[: number + 1])] = math.inf
-            found += [Contact(e, robot, a, float(gap[e, a])) for e, a in np.argwhere(gap < 0.0).tolist()]
-    return tuple(sorted(found))
+            contacts += [Contact(e, robot, a, float(gap[e, a])) for e, a in np.argwhere(gap < 0.0).tolist()]
+    return tuple(sorted(contacts))
 
 
 def exchange_people(

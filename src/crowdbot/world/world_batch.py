@@ -78,7 +78,7 @@ class WorldBatch(World):
     def scene(self) -> Scene:
         """Scenes of all environments; setting it changes each of them."""
         scenes = [world.scene for world in self.worlds]
-        if self._stacked is None or any(one is not two for one, two in zip(self._stacked[0], scenes, strict=True)):
+        if self._stacked is None or any(item is not two for item, two in zip(self._stacked[0], scenes, strict=True)):
             self._stacked = (scenes, stack_scenes(scenes))
         return self._stacked[1]
 
@@ -108,7 +108,9 @@ class WorldBatch(World):
     @property
     def contacts(self) -> tuple[Contact, ...]:  # type: ignore[override]
         """Contacts between robots and other agents in the last step."""
-        return tuple(one._replace(environment=e) for e, world in enumerate(self.worlds) for one in world.contacts)
+        return tuple(
+            contact._replace(environment=e) for e, world in enumerate(self.worlds) for contact in world.contacts
+        )
 
     @property
     def waiting_count(self) -> Ints:
@@ -135,7 +137,7 @@ class WorldBatch(World):
         def advance(e: int) -> Exception | None:
             index = np.array([e])
             try:
-                self.worlds[e].step({robot: tree.take(one, index) for robot, one in wide.items()})
+                self.worlds[e].step({robot: tree.take(item, index) for robot, item in wide.items()})
             except Exception as error:  # told to the caller
                 return error
             return None
@@ -162,8 +164,8 @@ class WorldBatch(World):
         """Replace some environments by those of another world, which must not be used any more."""
         for world in worlds_of(other):
             match_robots(self.worlds[0], world)
-        for one in self.worlds:
-            match_robots(one, worlds_of(other)[0])
+        for item in self.worlds:
+            match_robots(item, worlds_of(other)[0])
         other.environment_time.follow(self.clock)
         self.environment_time = tree.put(self.environment_time, np.asarray(environments), other.environment_time)
         for e, world in zip(environments, worlds_of(other), strict=True):
@@ -287,7 +289,7 @@ def join_worlds(worlds: Sequence[World]) -> World:
     if len(worlds) == 1:
         return worlds[0]
     if worlds[0].has_own_walls:
-        return WorldBatch([one for world in worlds for one in worlds_of(world)], worlds[0].clock)
+        return WorldBatch([item for world in worlds for item in worlds_of(world)], worlds[0].clock)
     parts: Any = worlds
     return planar.join_worlds(parts)
 
@@ -298,7 +300,9 @@ def select_environments(world: World, environments: Sequence[int] | Ints) -> Wor
     if not world.has_own_walls:
         return planar.select_environments(anything, environments)
     worlds = [worlds_of(world)[int(e)] for e in environments]
-    return join_worlds([one.copy() if one.walls_fixed else planar.select_environments(one, [0]) for one in worlds])
+    return join_worlds(
+        [world.copy() if world.walls_fixed else planar.select_environments(world, [0]) for world in worlds]
+    )
 
 
 def put_environments(world: World, environments: Sequence[int] | Ints, other: World) -> World:

@@ -72,7 +72,7 @@ class DriveFigures:
         >>> DriveFigures(tilt=0.1).worst(DriveFigures(overshoot=0.2)).tilt
         0.1
         """
-        return DriveFigures(*(max(getattr(self, one.name), getattr(other, one.name)) for one in fields(self)))
+        return DriveFigures(*(max(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)))
 
     @property
     def fallen(self) -> bool:

@@ -87,15 +87,15 @@ class DriveRow:
         """Names of the figures that exceed their bars, of falls, and of heading changes."""
         found = [name for name, most in DRIVE_BARS.items() if getattr(self.grid, name) > most]
         regular = [self.grid, *(self.others[name] for name in REGULAR if name in self.others)]
-        if any(one.fallen for one in regular):
+        if any(item.fallen for item in regular):
             found.append("fall")
-        if any(one.heading_change > STRAIGHT for one in regular[1:]):
+        if any(item.heading_change > STRAIGHT for item in regular[1:]):
             found.append("heading_change")
         return tuple(found)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row as plain values."""
-        others = {name: one.as_dict() for name, one in self.others.items()}
+        others = {name: other.as_dict() for name, other in self.others.items()}
         words = {"robot": self.robot, "base": self.base, "step": self.step}
         return {**words, "grid": self.grid.as_dict(), "others": others, "failures": list(self.failures)}
 
@@ -163,7 +163,7 @@ def measure_drives(
         for k, step in enumerate(steps):
             if report is not None:
                 report("drives", (number + k / len(steps)) / len(loaded))
-            few = quick or all(abs(step - one) > 1e-9 for one in BARRED)
+            few = quick or all(abs(step - item) > 1e-9 for item in BARRED)
             runs = store.runs(robot, step, manoeuvres(robot, few))
             rows.append(_row(robot, step, runs))
             if step == shown:
@@ -181,16 +181,16 @@ def _measure_makers(
             for step in steps:
                 if report is not None:
                     report(f"drives of {robot.name}", number / len(files))
-                grid = [one for one in manoeuvres(robot, quick=True) if one.name in REGULAR]
+                grid = [manoeuvre for manoeuvre in manoeuvres(robot, quick=True) if manoeuvre.name in REGULAR]
                 yield replace(_row(robot, step, store.runs(robot, step, grid)), base=kind)
 
 
 def _row(robot: Robot, step: float, runs: Sequence[Run]) -> DriveRow:
     grid, others = DriveFigures(), {}
-    for one, physics, plane in runs:
-        found = compare_traces(robot.drive, one, physics, plane)
-        if one.name == "grid":
+    for item, physics, plane in runs:
+        found = compare_traces(robot.drive, item, physics, plane)
+        if item.name == "grid":
             grid = grid.worst(found)
         else:
-            others[one.name] = found
+            others[item.name] = found
     return DriveRow(robot.name, robot.base, step, grid, others)

@@ -198,15 +198,15 @@ def manoeuvres(robot: Robot, quick: bool = False) -> list[Manoeuvre]:
     drive = robot.drive
     top, most = float(getattr(drive, "max_speed", 1.0)), float(getattr(drive, "max_turn_rate", 1.0))
     reach = _reach(drive)
-    found = [_held("grid", twist, reach + robot.latency + HOLD, reach + HOLD) for twist in speed_grid(drive, quick)]
+    result = [_held("grid", twist, reach + robot.latency + HOLD, reach + HOLD) for twist in speed_grid(drive, quick)]
     long = 2.0 if quick else 10.0
-    found.append(_held("straight", Twist(top, 0.0), long, reach + HOLD))
-    found.append(_timed("ramp", long, lambda t: Twist(top * t / long, 0.0)))
-    found.append(_timed("sine", long, lambda t: Twist(0.5 * top, 0.5 * most * math.sin(0.5 * math.pi * t))))
+    result.append(_held("straight", Twist(top, 0.0), long, reach + HOLD))
+    result.append(_timed("ramp", long, lambda t: Twist(top * t / long, 0.0)))
+    result.append(_timed("sine", long, lambda t: Twist(0.5 * top, 0.5 * most * math.sin(0.5 * math.pi * t))))
     swerves = _timed("weave", long, lambda t: Twist(top, most * (0.5 if int(t) % 2 else -0.5)))
-    found.append(swerves)
-    found.append(Manoeuvre("slip", swerves.commands, swerves.held, 0.1))
-    return found
+    result.append(swerves)
+    result.append(Manoeuvre("slip", swerves.commands, swerves.held, 0.1))
+    return result
 
 
 def _reach(drive: Drive) -> float:
@@ -249,8 +249,8 @@ def drive_runs(robot: Robot, step: float, chosen: Sequence[Manoeuvre]) -> tuple[
     (1, True)
     """
     return tuple(
-        (one, trace_physics(robot, one.commands, step, one.friction), trace_planar(robot, one.commands, step))
-        for one in chosen
+        (item, trace_physics(robot, item.commands, step, item.friction), trace_planar(robot, item.commands, step))
+        for item in chosen
     )
 
 
@@ -296,13 +296,13 @@ class TraceStore:
             return measure(robot, step, chosen)
         key = _key(robot, step, chosen)
         file = self.folder / f"{robot.name}-{1000.0 * step:g}ms-{key[:8]}.npz"
-        found = _read(file, key, chosen)
-        if found is None:
-            found = measure(robot, step, chosen)
+        result = _read(file, key, chosen)
+        if result is None:
+            result = measure(robot, step, chosen)
             with explain_write_errors(file):
                 self.folder.mkdir(parents=True, exist_ok=True)
-                _write(file, key, found)
-        return found
+                _write(file, key, result)
+        return result
 
 
 def _key(robot: Robot, step: float, chosen: Sequence[Manoeuvre]) -> str:
@@ -333,7 +333,7 @@ def _read(file: Path, key: str, chosen: Sequence[Manoeuvre]) -> tuple[Run, ...] 
             if str(kept["key"]) != key:
                 return None
             return tuple(
-                (one, _read_trace(kept, f"a{n}/"), _read_trace(kept, f"b{n}/")) for n, one in enumerate(chosen)
+                (item, _read_trace(kept, f"a{n}/"), _read_trace(kept, f"b{n}/")) for n, item in enumerate(chosen)
             )
     except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
         return None

@@ -121,7 +121,7 @@ class Rvo2Peer(EnginePeer):
         """Return a function that makes one step of RVO2 from the people of environment 0."""
         wish = scene.desired_velocity(self.dt)
         columns = (scene.position, scene.velocity, wish, scene.radius, scene.max_speed)
-        values = [np.ascontiguousarray(one[0]) for one in columns]
+        values = [np.ascontiguousarray(column[0]) for column in columns]
         if self.library is not None:
             return _Simulator(self.library, self.dt, values, threads).step
         simulator = self._pyrvo.RVOSimulator(self.dt, REACH, MOST, HORIZON, HORIZON, 0.25, 2.0)
@@ -162,7 +162,7 @@ def _load(path: Path) -> Any:
 
 def _compile(folder: Path) -> Path:
     """Return the shared library of the source and our access to it, compiled once."""
-    source = next((one for one in (folder, folder / "src") if any(one.glob("Agent.c*"))), None)
+    source = next((item for item in (folder, folder / "src") if any(item.glob("Agent.c*"))), None)
     if source is None:
         raise InputError(
             f"{folder} has no source of RVO2: there is no Agent.cc or Agent.cpp in it or in its folder src"
@@ -170,9 +170,9 @@ def _compile(folder: Path) -> Path:
     compiler = shutil.which("g++")
     if compiler is None:
         raise InputError("RVO2 cannot be compiled: there is no g++; install it, or leave out --rvo2")
-    files = sorted(one for one in source.glob("*.c*") if one.suffix in (".cc", ".cpp") and one.stem != "Export")
+    files = sorted(item for item in source.glob("*.c*") if item.suffix in (".cc", ".cpp") and item.stem != "Export")
     access = resources.files("crowdbot") / "assets" / "benchmark" / "rvo2_access.cc"
-    digest = hashlib.sha256(b"".join([access.read_bytes(), *(one.read_bytes() for one in files)])).hexdigest()[:16]
+    digest = hashlib.sha256(b"".join([access.read_bytes(), *(file.read_bytes() for file in files)])).hexdigest()[:16]
     built = cache_root() / "rvo2" / f"{digest}.so"
     if not built.exists():
         built.parent.mkdir(parents=True, exist_ok=True)
@@ -245,7 +245,7 @@ class NavgroundOrcaPeer(EnginePeer):
         """Return a function that makes one step of a world of navground."""
         core, sim, world = self._core, self._sim, self._sim.World()
         columns = (scene.position[0], scene.goal[0], scene.radius[0], scene.preferred_speed[0], scene.max_speed[0])
-        for place, goal, radius, speed, top in zip(*(one.tolist() for one in columns), strict=True):
+        for place, goal, radius, speed, top in zip(*(column.tolist() for column in columns), strict=True):
             kinematics = core.kinematics.OmnidirectionalKinematics(max_speed=top, max_angular_speed=1.5)
             behavior = core.behaviors.ORCABehavior(kinematics, radius)
             behavior.optimal_speed, behavior.safety_margin = speed, 0.0

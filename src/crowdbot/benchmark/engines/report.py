@@ -37,7 +37,7 @@ def time_steps(ours: Start, theirs: Start, steps: int, repeats: int) -> NDArray[
     >>> bool((found[0] < found[1]).all()), found.shape
     (True, (2, 3))
     """
-    found = np.empty((2, repeats))
+    result = np.empty((2, repeats))
     for k in range(repeats):
         for row, start in enumerate((ours, theirs)):
             step = start()
@@ -45,8 +45,8 @@ def time_steps(ours: Start, theirs: Start, steps: int, repeats: int) -> NDArray[
             begin = time.perf_counter()
             for _ in range(steps):
                 step()
-            found[row, k] = (time.perf_counter() - begin) / steps
-    return found
+            result[row, k] = (time.perf_counter() - begin) / steps
+    return result
 
 
 @contextmanager

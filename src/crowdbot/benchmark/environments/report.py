@@ -193,7 +193,7 @@ def _measure(trial: Trial, environments: int, steps: int) -> tuple[WorkRate, int
     repeat_step(2)(simulation)
     work = TimedWork(environments * steps, lambda: simulation, repeat_step(steps))
     rate = rates({"ours": work}, repeats=1, warm_up=False)["ours"]
-    failure = next((one for one in simulation.failures if one is not None), None)
+    failure = next((failure for failure in simulation.failures if failure is not None), None)
     if failure is not None:
         raise CrowdbotError(f"an environment ended with an error: {failure}")
     return rate, agents

@@ -150,13 +150,13 @@ def _frames(trial: Trial) -> tuple[Simulation, list[StepRecord]]:
         simulation.advance()
         frames.append(simulation.record(0, due=True, collisions=False))
     return simulation, [
-        dataclasses.replace(one, readings=(*one.readings, (robot, camera, image)) if one.readings else ())
-        for one in frames
+        dataclasses.replace(frame, readings=(*frame.readings, (robot, camera, image)) if frame.readings else ())
+        for frame in frames
     ]
 
 
 def _is_part(topic: str) -> bool:
-    return topic.endswith("/") and any(one == topic[:-1] or one.startswith(topic) for one in LOAD_TOPICS)
+    return topic.endswith("/") and any(item == topic[:-1] or item.startswith(topic) for item in LOAD_TOPICS)
 
 
 @contextlib.contextmanager

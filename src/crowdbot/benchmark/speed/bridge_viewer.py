@@ -29,7 +29,7 @@ async def _foxglove(socket: Any, topics: Sequence[str]) -> None:
         message = await socket.receive()
         if message.type == aiohttp.WSMsgType.TEXT:
             frame = json.loads(message.data)
-            found |= {one["topic"]: one["id"] for one in frame.get("channels", ())}
+            found |= {item["topic"]: item["id"] for item in frame.get("channels", ())}
     rows = [{"id": k, "channelId": found[topic]} for k, topic in enumerate(topics)]
     await socket.send_json({"op": "subscribe", "subscriptions": rows})
 

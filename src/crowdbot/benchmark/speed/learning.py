@@ -38,13 +38,13 @@ def learning_measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     >>> "learn-anchor-net" in learning_measurements()
     True
     """
-    found: dict[str, Callable[[], Measurement | Gauge]] = {}
+    result: dict[str, Callable[[], Measurement | Gauge]] = {}
     for name in ("anchor-net", "social-ways"):
-        found[f"learn-{name}"] = functools.partial(_learning, name)
-        found[f"epoch-{name}"] = functools.partial(_epoch, name)
-        found[f"predict-{name}-{PEOPLE}"] = functools.partial(_live, name)
-    found["learn-memory"] = _memory
-    return found
+        result[f"learn-{name}"] = functools.partial(_learning, name)
+        result[f"epoch-{name}"] = functools.partial(_epoch, name)
+        result[f"predict-{name}-{PEOPLE}"] = functools.partial(_live, name)
+    result["learn-memory"] = _memory
+    return result
 
 
 def synthetic_samples(scenes: int = 440) -> Samples:

@@ -68,8 +68,8 @@ def print_statistics(options: argparse.Namespace) -> int:
         print_json({"source": title, "missing": missing, "bands": [band._asdict() for band in bands]})
         return 0
     rows = [
-        [f"{band.near:g} to {band.far:g} m", str(band.people), f"{band.returns:.1f}", f"{band.low:.0f} to {band.high:.0f}",
-         f"{band.unseen:.3f}", _shown(band.apart), _shown(band.width)]
+        [f"{band.near:g} to {band.far:g} m", str(band.people), f"{band.returns:.1f}",
+         f"{band.low:.0f} to {band.high:.0f}", f"{band.unseen:.3f}", _shown(band.apart), _shown(band.width)]
         for band in bands if band.people
     ]  # fmt: skip
     head = ("distance", "people", "returns a person", "10 to 90 %", "without return", "in two pieces", "width [m]")

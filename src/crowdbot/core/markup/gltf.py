@@ -79,7 +79,7 @@ def check_gltf_table(table: Mapping[str, Any], room: int) -> None:
             raise InputError(f"its part {number} ends at byte {first + size}, and it has {room} bytes of data")
     for number, accessor in enumerate(table_rows(table, "accessors")):
         _check_accessor(number, accessor, views)
-    primitives = [one for mesh in table_rows(table, "meshes") for one in table_rows(mesh, "primitives")]
+    primitives = [row for mesh in table_rows(table, "meshes") for row in table_rows(mesh, "primitives")]
     _check_parts(len(primitives), "primitives")
     _check_nodes(table_rows(table, "nodes"))
 
@@ -129,10 +129,10 @@ def table_rows(table: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
     Raises:
         InputError: the value is something else, as the end of a sentence.
     """
-    found = table.get(key, [])
-    if not isinstance(found, list) or not all(isinstance(row, dict) for row in found):
+    result = table.get(key, [])
+    if not isinstance(result, list) or not all(isinstance(row, dict) for row in result):
         raise InputError(f"{key!r} in its table is not a list of objects")
-    return found
+    return result
 
 
 def whole_value(row: Mapping[str, Any], key: str, default: int) -> int:
@@ -239,14 +239,14 @@ class GltfFile:
         nodes = self.rows("nodes")
         parent = {child: k for k, node in enumerate(nodes) for child in node.get("children", ())}
         own = [self._frame(node) for node in nodes]
-        found = np.empty((len(nodes), 4, 4))
+        result = np.empty((len(nodes), 4, 4))
         for k in range(len(nodes)):
             whole, at = own[k], k
             while at in parent:
                 at = parent[at]
                 whole = own[at] @ whole
-            found[k] = whole
-        return found
+            result[k] = whole
+        return result
 
     def _frame(self, node: Mapping[str, Any]) -> Floats:
         if "matrix" in node:
@@ -259,20 +259,20 @@ class GltfFile:
             [s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)],
             [s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)],
         ])  # fmt: skip
-        found = np.eye(4)
-        found[:3, :3] = turn * self._numbers(node, "scale", 3, (1.0, 1.0, 1.0))
-        found[:3, 3] = self._numbers(node, "translation", 3, (0.0, 0.0, 0.0))
-        return found
+        frame = np.eye(4)
+        frame[:3, :3] = turn * self._numbers(node, "scale", 3, (1.0, 1.0, 1.0))
+        frame[:3, 3] = self._numbers(node, "translation", 3, (0.0, 0.0, 0.0))
+        return frame
 
     def _numbers(self, node: Mapping[str, Any], key: str, count: int, default: tuple[float, ...]) -> Floats:
         value = node.get(key, default)
         try:
-            found = np.array(value, dtype=np.float64)
+            numbers = np.array(value, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
-            found = np.zeros(0)
-        if found.shape != (count,) or not np.all(np.isfinite(found)) or np.abs(found).max() > 1e6:
+            numbers = np.zeros(0)
+        if numbers.shape != (count,) or not np.all(np.isfinite(numbers)) or np.abs(numbers).max() > 1e6:
             raise InputError(f"{self.name}: {key} of a node must be {count} numbers of at most 1e6")
-        return found
+        return numbers
 
     def _view(self, view: Mapping[str, Any]) -> bytes:
         number = view.get("buffer", 0)
@@ -310,7 +310,7 @@ def read_gltf(path: Path) -> GltfFile:
             raise InputError(f"{name} needs the extension {str(word)[:40]!r}, which is not read; save it without")
     if len(rows) > MOST_BUFFERS:
         raise InputError(f"{name} has {len(rows)} buffers, at most {MOST_BUFFERS} are allowed")
-    buffers = [rest if "uri" not in one else _from_address(one["uri"], folder, name) for one in rows]
+    buffers = [rest if "uri" not in row else _from_address(row["uri"], folder, name) for row in rows]
     if sum(map(len, buffers)) > MOST_BYTES:
         raise InputError(f"the buffers of {name} are larger than {MOST_BYTES} bytes, the maximum")
     return GltfFile(name, table, tuple(buffers), folder)

@@ -110,13 +110,13 @@ def describe_class(path: Path, name: str, contract: type, address: str) -> type:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise InputError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from None
     source = _Source(path, tree)
-    found = source.described(name, contract, 0) if name in source.classes else None
-    if found is None or inspect.isabstract(found) or not issubclass(found, contract):
+    result = source.described(name, contract, 0) if name in source.classes else None
+    if result is None or inspect.isabstract(result) or not issubclass(result, contract):
         raise InputError(
             f"{address} is not a concrete {contract.__name__}; {path.name} defines"
             f" {', '.join(source.classes) or 'none'}"
         )
-    return found
+    return result
 
 
 class _Source:
@@ -133,15 +133,15 @@ class _Source:
                 self.names |= dict(self._assignments(node))
 
     def _import(self, node: ast.Import | ast.ImportFrom) -> None:
-        for one in node.names:
+        for name in node.names:
             if isinstance(node, ast.Import):
-                where = one.name if one.asname else one.name.partition(".")[0]
-                if (module := _module(where)) is not None and _module(one.name) is not None:
-                    self.names[one.asname or where] = module
+                where = name.name if name.asname else name.name.partition(".")[0]
+                if (module := _module(where)) is not None and _module(name.name) is not None:
+                    self.names[name.asname or where] = module
             elif node.level == 0 and node.module and (module := _module(node.module)) is not None:
-                value = getattr(module, one.name, None) or _module(f"{node.module}.{one.name}")
+                value = getattr(module, name.name, None) or _module(f"{node.module}.{name.name}")
                 if value is not None:
-                    self.names[one.asname or one.name] = value
+                    self.names[name.asname or name.name] = value
 
     def _assignments(self, node: ast.Assign | ast.AnnAssign) -> Iterator[tuple[str, Any]]:
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
@@ -166,26 +166,26 @@ class _Source:
                 return getattr(owner, node.attr)
         elif isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
             left, right = self.value(node.left), self.value(node.right)
-            if all(type(one) in (int, float) and abs(one) < 1e12 for one in (left, right)):
+            if all(type(item) in (int, float) and abs(item) < 1e12 for item in (left, right)):
                 with contextlib.suppress(ArithmeticError):
                     return _OPERATORS[type(node.op)](left, right)
         elif isinstance(node, ast.Call) and all(word.arg for word in node.keywords):
             maker = self.value(node.func)
             if _is_safe(maker):
                 given = {str(word.arg): self.value(word.value) for word in node.keywords}
-                return maker(*[self.value(one) for one in node.args], **given)
+                return maker(*[self.value(argument) for argument in node.args], **given)
         raise UnreadableValue(ast.unparse(node)[:60])
 
     def described(self, name: str, contract: type, depth: int) -> type | None:
         """Return the description of a class, or None if it does not extend the contract."""
         node = self.classes[name]
-        bases = tuple(base for one in node.bases if (base := self._base(one, contract, depth)) is not None)
+        bases = tuple(base for item in node.bases if (base := self._base(item, contract, depth)) is not None)
         if not any(issubclass(base, contract) for base in bases):
             return None
         space: dict[str, Any] = {"__module__": f"crowdbot_source_{self.path.stem}", "_described_file": self.path}
         rows: list[tuple[str, Any, Any]] = []
-        unread = {one for base in bases for one in unread_fields(base)}
-        own = any("dataclass" in ast.dump(one) for one in node.decorator_list)
+        unread = {field for base in bases for field in unread_fields(base)}
+        own = any("dataclass" in ast.dump(item) for item in node.decorator_list)
         for inner in node.body:
             if isinstance(inner, ast.FunctionDef | ast.AsyncFunctionDef):
                 space[inner.name] = _placeholder(inner)
@@ -290,7 +290,9 @@ def _placeholder(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Any:
     def unread(*args: Any, **more: Any) -> NoReturn:
         raise UnreadableValue(node.name)
 
-    names = dict.fromkeys(one.arg for one in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs))
+    names = dict.fromkeys(
+        posonlyarg.arg for posonlyarg in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)
+    )
     rows = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in names]
     unread.__signature__ = inspect.Signature(rows)  # type: ignore[attr-defined]
     marks = ast.unparse(ast.Tuple([*node.decorator_list]))

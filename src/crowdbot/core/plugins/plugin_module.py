@@ -178,7 +178,7 @@ def _locate(place: str, attribute: str, folder: Path, trust: bool) -> tuple[Path
 def _is_imported(path: Path) -> bool:
     """Return whether a folder is a package that has been imported under its own name."""
     own = getattr(sys.modules.get(path.name), "__path__", ())
-    return str(path) in [str(Path(one).resolve()) for one in own]
+    return str(path) in [str(Path(item).resolve()) for item in own]
 
 
 def _module_file(place: str, trust: bool) -> Path:
@@ -217,7 +217,7 @@ def _defining_file(folder: Path, name: str) -> str:
     if found:
         choices = " or ".join(f"{folder.name}/:{stem}.{name}" for stem in found)
         raise InputError(f"{folder} has several classes {name}; write {choices}")
-    every = sorted({one for classes in names.values() for one in classes})
+    every = sorted({class_ for classes in names.values() for class_ in classes})
     raise InputError(f"no Python file in {folder} defines the class {name!r}; they define {', '.join(every) or 'none'}")
 
 

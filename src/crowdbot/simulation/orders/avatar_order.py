@@ -85,14 +85,18 @@ class AvatarOrder(Order):
     def _unit_gaze(self) -> tuple[float, ...]:
         """Return the direction of the eyes with length 1."""
         values = list(self.gaze) if isinstance(self.gaze, list | tuple | np.ndarray) else []
-        if len(values) != 3 or not all(isinstance(one, int | float | np.number) for one in values) or self.head is None:
+        if (
+            len(values) != 3
+            or not all(isinstance(value, int | float | np.number) for value in values)
+            or self.head is None
+        ):
             raise InputError(
                 f"AvatarOrder: gaze = {self.gaze!r} must be 3 numbers, a direction in the frame of the head"
             )
-        length = math.hypot(*(float(one) for one in values))
+        length = math.hypot(*(float(value) for value in values))
         if not 1e-6 <= length <= 1e6:
             raise InputError(f"AvatarOrder: gaze = {self.gaze!r} has the length {length:g}; it must be a direction")
-        return tuple(float(one) / length for one in values)
+        return tuple(float(value) / length for value in values)
 
     @property
     def pose(self) -> BodyPose:
@@ -102,7 +106,7 @@ class AvatarOrder(Order):
     def check(self, simulation: OrderTarget) -> None:
         """Raise :class:`InputError` if there is no such external avatar, or the time is too far ahead."""
         super().check(simulation)
-        known = {one.name: one.source for one in simulation.trial.avatars}
+        known = {avatar.name: avatar.source for avatar in simulation.trial.avatars}
         if self.avatar not in known:
             raise InputError(
                 f"there is no avatar {self.avatar!r}{did_you_mean(self.avatar, known)}; the trial has"

@@ -127,7 +127,7 @@ def write_order(order: Order) -> str:
     '{"order": "velocity", "robot": "pepper", "forward": 0.5}'
     """
     values = {"order": order_name(type(order))}
-    for part in sorted(dataclasses.fields(order), key=lambda one: one.name in ("environment", "source")):
+    for part in sorted(dataclasses.fields(order), key=lambda field: field.name in ("environment", "source")):
         value = getattr(order, part.name)
         if value != part.default:
             values[part.name] = value
@@ -174,7 +174,7 @@ def _checked(kind: type[Order], name: str, values: Mapping[str, Any]) -> Order:
 def _check_type(name: str, key: str, wanted: str, value: Any) -> None:
     kinds: dict[str, tuple[type, ...]] = {"float": (int, float), "int": (int,), "str": (str,), "bool": (bool,)}
     kinds["tuple[float, ...]"] = (list, tuple)
-    allowed = tuple(one for part in wanted.split(" | ") for one in kinds.get(part, ()))
+    allowed = tuple(item for part in wanted.split(" | ") for item in kinds.get(part, ()))
     if value is None and "None" in wanted:
         return
     if not isinstance(value, allowed) or (isinstance(value, bool) and bool not in allowed):

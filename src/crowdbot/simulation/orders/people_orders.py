@@ -143,11 +143,11 @@ def check_person(simulation: OrderTarget, person: int, environment: int) -> int:
 def _check_avatar(simulation: OrderTarget, slot: int, person: int) -> None:
     trial, avatars = simulation.trial, simulation.trial.avatars
     if slot in simulation.world.twists:
-        robot = next((one for one in trial.robots if simulation.agent_of(one.name) == slot), None)
+        robot = next((robot for robot in trial.robots if simulation.agent_of(robot.name) == slot), None)
         if robot is not None and robot.mirror is not None:
             raise InputError(f"{person} is the id of robot {robot.name!r}, whose pose comes from its source")
         return
-    recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+    recorded = sum(len(item.walks(trial.duration)) for item in trial.recorded)
     k = slot - (trial.people - recorded - len(avatars))
     if 0 <= k < len(avatars):
         raise InputError(f"{person} is the id of avatar {avatars[k].name!r}, whose pose comes from its source")

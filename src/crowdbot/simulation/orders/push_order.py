@@ -70,7 +70,7 @@ class PushOrder(Order):
         super().check(simulation)
         slot = check_person(simulation, self.person, self.environment)
         trial = simulation.trial
-        recorded = sum(len(one.walks(trial.duration)) for one in trial.recorded)
+        recorded = sum(len(item.walks(trial.duration)) for item in trial.recorded)
         if trial.people - recorded <= slot < trial.people:
             raise InputError(f"{self.person} is the id of a recorded person, who keeps to the recording")
         world, _ = simulation.world.part(self.environment)
@@ -101,7 +101,7 @@ def body_of(simulation: Any, slot: int, environment: int) -> tuple[float, float]
         row = int(motion.row[slot])
         return float(motion.people.mass[row]), float(motion.people.height[row])
     seed, count = simulation.seeds[environment], int(simulation.world.slots[environment])
-    robots = np.array([one.agent for one in (*simulation.robots, *simulation.former_robots)], dtype=np.int64)
+    robots = np.array([robot.agent for robot in (*simulation.robots, *simulation.former_robots)], dtype=np.int64)
     trial, number = simulation.trial, slot - int(np.count_nonzero(robots < slot))
     people = count - int(np.count_nonzero(robots < count))
     figures = people_appearance(trial, simulation.people, people + len(trial.robots), seed).people

@@ -45,11 +45,15 @@ class ResumableHash:
         fits = fits and isinstance(rest, np.ndarray) and rest.dtype == np.uint8 and rest.ndim == 1
         if not fits or not isinstance(length, int) or not 0 <= length < 2**62 or length % HASH_BLOCK:
             raise InputError("the state of a hash needs words [8], a length in whole blocks and the rest")
-        found = cls()
+        resumable_hash = cls()
         assert words is not None
         assert rest is not None
-        found._words, found._length, found._rest = words.copy(), length, bytearray(rest.tobytes())
-        return found
+        resumable_hash._words, resumable_hash._length, resumable_hash._rest = (
+            words.copy(),
+            length,
+            bytearray(rest.tobytes()),
+        )
+        return resumable_hash
 
     @property
     def state(self) -> dict[str, Any]:

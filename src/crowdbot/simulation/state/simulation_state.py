@@ -104,8 +104,8 @@ def _part_worlds(world: Any) -> Iterator[tuple[str, Any]]:
     if worlds == [world]:
         yield "simulation/world", world
         return
-    for e, one in enumerate(worlds):
-        yield f"simulation/world/worlds/{e}", one
+    for e, item in enumerate(worlds):
+        yield f"simulation/world/worlds/{e}", item
 
 
 def _structure_problem(simulation: Simulation) -> str:
@@ -113,24 +113,24 @@ def _structure_problem(simulation: Simulation) -> str:
     first = simulation.trial.people
     agents = [robot.agent for robot in simulation.robots]
     worlds = [world for _, world in _part_worlds(simulation.world)]
-    if agents != [first + k for k in range(len(agents))] or any(_has_other_robots(one, agents) for one in worlds):
+    if agents != [first + k for k in range(len(agents))] or any(_has_other_robots(world, agents) for world in worlds):
         return "robots were added or removed while the simulation ran; its state cannot be stored from then on"
-    if any(_has_other_props(one, simulation) for one in worlds):
+    if any(_has_other_props(world, simulation) for world in worlds):
         return "props were added or removed while the simulation ran; its state cannot be stored from then on"
     return ""
 
 
 def _add_people(world: Any, state: Mapping[str, Any]) -> None:
     """Add the slots and the bodies of people whom orders have added before a state."""
-    for path, one in _part_worlds(world):
+    for path, item in _part_worlds(world):
         stored = state.get(f"{path}/_traffic/ids")
         agents = stored.shape[1] if isinstance(stored, np.ndarray) and stored.ndim == 2 else 0
-        if one.scene.shape[1] < agents <= MOST_AGENTS:
-            widen(one, agents)
-        for e, place, people in _bodies_of_people(path, one):
+        if item.scene.shape[1] < agents <= MOST_AGENTS:
+            widen(item, agents)
+        for e, place, people in _bodies_of_people(path, item):
             afoot = state.get(f"{place}/afoot")
             for agent in afoot[len(people.afoot) :].tolist() if isinstance(afoot, np.ndarray) else ():
-                one.embody_person(agent, e)
+                item.embody_person(agent, e)
 
 
 def _bodies_of_people(path: str, world: Any) -> list[tuple[int, str, Any]]:

@@ -91,16 +91,16 @@ def range_remarks(trial: Trial) -> list[str]:
     ranges = {item.model: item for item in map(model_range, models) if item is not None}
     density, step = start_density(trial), trial.step / trial.substeps
     result = []
-    for range_ in ranges.values():
-        if density > range_.max_density:
+    for bounds in ranges.values():
+        if density > bounds.max_density:
             result.append(
-                f"crowd model {range_.model} is used at {density:.2g} people/m2, beyond its range of {range_.max_density:g}:"
-                f" {range_.why} ({range_.density_source})"
+                f"crowd model {bounds.model} is used at {density:.2g} people/m2, beyond its range of {bounds.max_density:g}:"
+                f" {bounds.why} ({bounds.density_source})"
             )
-        if step > range_.max_step + STEP_TOLERANCE:
+        if step > bounds.max_step + STEP_TOLERANCE:
             result.append(
-                f"crowd model {range_.model} is used with a time step of {step:g} s, beyond its range of"
-                f' {range_.max_step:g} s ({range_.step_source}); write substeps="{_substeps(trial, range_)}"'
+                f"crowd model {bounds.model} is used with a time step of {step:g} s, beyond its range of"
+                f' {bounds.max_step:g} s ({bounds.step_source}); write substeps="{_substeps(trial, bounds)}"'
             )
     return result
 

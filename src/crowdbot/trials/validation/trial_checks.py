@@ -156,17 +156,17 @@ def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
     return place(trial.stage, trial.spawners, trial.robots, checked.seed, trial.agents, walks, avatars)[1]
 
 
-def _recording(trial: Trial, recorded_people: RecordedPeople) -> Problems:
+def _recording(trial: Trial, recording: RecordedPeople) -> Problems:
     """Yield why a recording cannot be replayed."""
     try:
-        walks = recorded_people.walks(trial.duration)
+        walks = recording.walks(trial.duration)
     except InputError as error:
-        yield recorded_people, f"data={quote_value(recorded_people.data)} {error}"
+        yield recording, f"data={quote_value(recording.data)} {error}"
         return
     if not walks:
         yield (
-            recorded_people,
-            f"data={quote_value(recorded_people.data)} contains nobody after {recorded_people.begin:g} s; use an earlier begin",
+            recording,
+            f"data={quote_value(recording.data)} contains nobody after {recording.begin:g} s; use an earlier begin",
         )
 
 

@@ -260,7 +260,7 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
     }
 
 
-def _sentence(paired_comparison: PairedComparison) -> str:
-    where = ", ".join(filter(None, (paired_comparison.trial, paired_comparison.robot)))
-    what = f"{where}, {paired_comparison.metric}: {paired_comparison.second} minus {paired_comparison.first} = {paired_comparison.difference}"
-    return f"{what}, p = {paired_comparison.corrected:.3g} (corrected)"
+def _sentence(comparison: PairedComparison) -> str:
+    where = ", ".join(filter(None, (comparison.trial, comparison.robot)))
+    what = f"{where}, {comparison.metric}: {comparison.second} minus {comparison.first} = {comparison.difference}"
+    return f"{what}, p = {comparison.corrected:.3g} (corrected)"

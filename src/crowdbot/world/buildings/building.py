@@ -142,10 +142,10 @@ def _pieces(file: GltfFile) -> list[_Piece]:
 
 def _primitives(file: GltfFile, node: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     rows = file.row("meshes", node["mesh"]).get("primitives", [])
-    for one in rows:
-        if not isinstance(one.get("attributes"), dict) or one.get("mode", 4) > 4:
+    for row in rows:
+        if not isinstance(row.get("attributes"), dict) or row.get("mode", 4) > 4:
             raise InputError(f"{file.name}: a primitive is no list of triangles; save it with triangles")
-    return [one for one in rows if one.get("mode", 4) == 4 and "POSITION" in one["attributes"]]
+    return [row for row in rows if row.get("mode", 4) == 4 and "POSITION" in row["attributes"]]
 
 
 def _piece(file: GltfFile, primitive: Mapping[str, Any], frame: Floats, door: str) -> _Piece:
@@ -186,7 +186,7 @@ def _doors(pieces: list[_Piece]) -> tuple[tuple[BuildingDoor, ...], list[_Piece]
     """Return the doors, and the triangles that belong to none."""
     import shapely
 
-    found: list[BuildingDoor] = []
+    building_doors: list[BuildingDoor] = []
     left = [piece for piece in pieces if not piece.door]
     for name in sorted({piece.door for piece in pieces if piece.door}):
         own = [piece for piece in pieces if piece.door == name]
@@ -205,8 +205,8 @@ def _doors(pieces: list[_Piece]) -> tuple[tuple[BuildingDoor, ...], list[_Piece]
             left += own
             continue
         (ax, ay), (bx, by) = np.round(ends, 3).tolist()
-        found.append(BuildingDoor(name.strip()[:80] or "door", (ax, ay), (bx, by), round(tall, 2)))
-    return tuple(found), left
+        building_doors.append(BuildingDoor(name.strip()[:80] or "door", (ax, ay), (bx, by), round(tall, 2)))
+    return tuple(building_doors), left
 
 
 def _parts(file: GltfFile, number: int, pieces: list[_Piece]) -> list[BuildingPart]:

@@ -90,7 +90,9 @@ class _Queues:
         sources = self.sources
         rate = np.array([source.rate for source in sources], dtype=np.float64)
         end = np.array([source.end for source in sources], dtype=np.float64)
-        most = np.array([np.inf if one.max_count is None else one.max_count for one in sources], dtype=np.float64)
+        most = np.array(
+            [np.inf if source.max_count is None else source.max_count for source in sources], dtype=np.float64
+        )
         regular = np.array([source.timing == "regular" for source in sources], dtype=np.bool_)
         short = np.zeros(chosen.shape, dtype=np.bool_)
         queue = (self.begin, self.due, self.come, self.waiting, self.arrival, self.gaps, self.gap)
@@ -317,7 +319,7 @@ def arrival_counts(sources: Sequence[PeopleSource], seeds: Sequence[int], time: 
 
 def _is_buffered(source: PeopleSource) -> bool:
     """Return whether several speeds and radii can be drawn in advance: one random number for each."""
-    return all(isinstance(one, int | float) or hasattr(one, "values_at") for one in (source.speed, source.radius))
+    return all(isinstance(item, int | float) or hasattr(item, "values_at") for item in (source.speed, source.radius))
 
 
 def _state_of(rng: np.random.Generator) -> Words:

@@ -67,7 +67,7 @@ class Avatars:
         self.external = frozenset(external)
         self.robots = tuple(int(agent) for agent in robots)
         self.agents = np.asarray(agents, dtype=np.int64)
-        self.names, self.delay = tuple(names), tuple(float(one) for one in delay)
+        self.names, self.delay = tuple(names), tuple(float(item) for item in delay)
         self.sources = tree.objects(tuple(row) for row in sources)
         self._latest: dict[tuple[int, float], tuple[PoseSource, PoseMotion]] = {}  # holds sources, so ids are unique
         self.rows = np.zeros((len(self.sources), len(self.agents), len(BodyPose(0.0, 0.0).row())))

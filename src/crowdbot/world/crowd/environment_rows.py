@@ -22,7 +22,7 @@ def works_in_batches(model: CrowdModel) -> bool:
     Built-in models draw no random numbers. Others may draw some or have state, and are called per environment.
     """
     if isinstance(model, Mixture):
-        return all(works_in_batches(one) for one in model.models)
+        return all(works_in_batches(item) for item in model.models)
     return type(model).__module__.startswith("crowdbot.models.")
 
 
@@ -105,8 +105,8 @@ def join_models(models: Sequence[CrowdModel], agents: int) -> CrowdModel | None:
             changes[part.name] = np.stack([_pad_row(np.asarray(v), agents) for v in values])
         elif isinstance(values[0], np.ndarray) and values[0].ndim:
             changes[part.name] = np.broadcast_to(_pad_row(values[0], agents), (len(models), agents)).copy()
-    found: CrowdModel = dataclasses.replace(first, **changes) if changes else first
-    return found
+    crowd_model: CrowdModel = dataclasses.replace(first, **changes) if changes else first
+    return crowd_model
 
 
 def _widen_model(model: CrowdModel, agents: int) -> CrowdModel:
@@ -115,8 +115,8 @@ def _widen_model(model: CrowdModel, agents: int) -> CrowdModel:
     for part in dataclasses.fields(model):
         value = getattr(model, part.name)
         if part.name == "models" and isinstance(model, Mixture):
-            wide = tuple(_widen_model(one, agents) for one in value)
-            if any(one is not other for one, other in zip(wide, value, strict=True)):
+            wide = tuple(_widen_model(item, agents) for item in value)
+            if any(item is not other for item, other in zip(wide, value, strict=True)):
                 changes["models"] = wide
         elif isinstance(value, np.ndarray) and value.ndim and 1 < value.shape[-1] < agents:
             more = np.repeat(value[..., -1:], agents - value.shape[-1], axis=-1)

@@ -197,11 +197,11 @@ class JourneyAssignment:
         walking = np.greater(scene.active, scene.external)
         if who is not None:
             walking &= who
-        found = []
+        parties = []
         for number, journey in enumerate(self.journeys):
             mine = walking & (scene.memory[JOURNEY] == number)
             for k in np.unique(scene.memory[STOP][mine]).astype(int).tolist():
                 at = journey.stop(k)
                 if at is not None:
-                    found.append((number, k, at, mine & (scene.memory[STOP] == k)))
-        return found
+                    parties.append((number, k, at, mine & (scene.memory[STOP] == k)))
+        return parties

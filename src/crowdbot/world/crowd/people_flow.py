@@ -92,7 +92,7 @@ class PeopleFlow:
         """Change the router and the sources. A seed restarts the random numbers."""
         self.router = router
         if seed is not None:
-            self.seeds = np.array([one % 2**63 for one in environment_seeds(seed, len(self.seeds))], dtype=np.int64)
+            self.seeds = np.array([item % 2**63 for item in environment_seeds(seed, len(self.seeds))], dtype=np.int64)
         if self.arrivals is not None:
             self.arrivals.reconfigure(sources, None if seed is None else self.seeds.tolist())
         elif sources:
@@ -176,7 +176,7 @@ def environment_seeds(seed: int | Sequence[int], count: int) -> list[int]:
     """
     if isinstance(seed, int | np.integer):
         return [int(seed) + e for e in range(count)]
-    seeds = [int(one) for one in seed]
+    seeds = [int(item) for item in seed]
     if len(seeds) != count:
         raise InputError(f"{len(seeds)} seeds are given for {count} environments; give one for each, or one number")
     return seeds

@@ -171,7 +171,7 @@ class Doors:
         if leaf.opening == "order":
             return float(self.wanted[leaf.name])
         if leaf.opening == "schedule":
-            return float(self.wanted[leaf.name] ^ (sum(time >= one - 1e-9 for one in leaf.times) % 2 == 1))
+            return float(self.wanted[leaf.name] ^ (sum(time >= item - 1e-9 for item in leaf.times) % 2 == 1))
         away = _distance(leaf.line(0.0), place)
         near = away < (leaf.distance if leaf.opening == "approach" else radius + TOUCH)
         if np.any(near):

@@ -81,7 +81,7 @@ class DoorLeaf:
                 raise InputError(f"{who}: {name} = {getattr(self, name)} must be finite and at least 0")
         if not 0.0 < abs(self.angle) <= math.pi:
             raise InputError(f"{who}: angle = {self.angle} rad must be from -pi to pi and not 0")
-        if list(self.times) != sorted(set(self.times)) or any(not 0.0 <= one < math.inf for one in self.times):
+        if list(self.times) != sorted(set(self.times)) or any(not 0.0 <= time < math.inf for time in self.times):
             raise InputError(f"{who}: times = {self.times} must increase, from 0 s on")
 
     @property
@@ -118,7 +118,7 @@ class DoorLeaf:
 
     def body(self, name: str) -> Element:
         """Return the leaf as an MJCF body with the joint ``name``."""
-        found = Element("body", {"name": name, "pos": row((self.x, self.y, 0.0)), "euler": row((0.0, 0.0, self.yaw))})
+        element = Element("body", {"name": name, "pos": row((self.x, self.y, 0.0)), "euler": row((0.0, 0.0, self.yaw))})
         joint = {"name": name, "type": "hinge", "axis": "0 0 1"}
         if self.kind == "sliding":
             joint |= {"type": "slide", "axis": "1 0 0"}
@@ -128,15 +128,15 @@ class DoorLeaf:
             spring = max(self.closer, 1e-3) / abs(self.angle)
             joint |= {"stiffness": row((spring,)), "damping": row((2.0 * math.sqrt(spring * inertia),))}
             joint |= {"limited": "true", "range": row((-abs(self.angle), abs(self.angle)))}
-        found.children.append(Element("joint", joint))
+        element.children.append(Element("joint", joint))
         across = self.mass * (self.width**2 + THICK**2) / 12.0
         inertia_row = {"pos": row((0.5 * self.width, 0.0, 0.5 * self.height)), "mass": row((self.mass,))}
-        found.children.append(Element("inertial", {**inertia_row, "diaginertia": row((across, across, across))}))
+        element.children.append(Element("inertial", {**inertia_row, "diaginertia": row((across, across, across))}))
         size = {"type": "box", "size": row((0.5 * self.width, 0.5 * THICK, 0.5 * self.height - 0.01))}
         place = {"pos": row((0.5 * self.width, 0.0, 0.5 * self.height + 0.01))}
         geom = {"name": f"{name}/leaf", "rgba": GLASS, "group": "0", **size, **place, **LEAF}
-        found.children.append(Element("geom", geom))
-        return found
+        element.children.append(Element("geom", geom))
+        return element
 
     def box(self, share: float) -> tuple[Floats, Floats, float]:
         """Return the centre ``[3]`` and half sides ``[3]`` [m] and the yaw [rad] of the leaf."""

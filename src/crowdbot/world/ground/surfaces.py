@@ -75,7 +75,7 @@ def _slope_boxes(part: GroundPart) -> list[tuple[Floats, Floats]]:
     down = np.array([math.sin(angle), 0.0, -math.cos(angle)]) * 0.5 * thick
     top = np.array([0.0, 0.0, 0.5 * (part.rear + part.front)])
     size = np.array([0.5 * part.length / math.cos(angle), 0.5 * part.width, 0.5 * thick])
-    found = [(base @ frame(top + down, axis_rotation((0.0, 1.0, 0.0), -angle)), size)]
+    slope_boxes = [(base @ frame(top + down, axis_rotation((0.0, 1.0, 0.0), -angle)), size)]
     count = max(1, math.ceil(rise / thick))
     for k in range(count):
         low, high = (k / count, (k + 1) / count)
@@ -84,5 +84,5 @@ def _slope_boxes(part: GroundPart) -> list[tuple[Floats, Floats]]:
             continue
         middle = (0.5 * (low + high) - 0.5) * part.length
         half = np.array([0.5 * part.length / count, 0.5 * part.width, 0.5 * tall])
-        found.append((base @ frame((middle, 0.0, 0.5 * tall)), half))
-    return found
+        slope_boxes.append((base @ frame((middle, 0.0, 0.5 * tall)), half))
+    return slope_boxes

@@ -119,7 +119,7 @@ class _Found:
         """Add shapes of a kind with frames ``[N, 4, 4]`` and sizes ``[N, 3]`` for an agent or the stage."""
         middle, axis = place[:, :3, 3], place[:, :3, 2]
         if kind == "box":
-            turn = np.array([quaternion(one[:3, :3]) for one in place])
+            turn = np.array([quaternion(item[:3, :3]) for item in place])
             self.boxes.append((middle, size, turn, np.full(len(size), owner)))
         elif kind == "capsule":
             reach = axis * size[:, 1:2]
@@ -226,7 +226,7 @@ def _of_prop(prop: PropBody, moved: Floats | None) -> list[tuple[str, Floats, Fl
     place = moved
     if place is None:
         place = frame(_numbers(body, "pos"), axis_rotation((0.0, 0.0, 1.0), prop.heading))
-    found = []
+    result = []
     for geom in body.each("geom"):
         size = _numbers(geom, "size")
         size = np.concatenate([size, np.zeros(3 - len(size))])
@@ -236,8 +236,8 @@ def _of_prop(prop: PropBody, moved: Floats | None) -> list[tuple[str, Floats, Fl
             raise InputError(
                 f"bodies: {type(prop).__name__} has a shape of type {kind!r}, which ray casting does not support"
             )
-        found.append((kind, place @ frame(_numbers(geom, "pos")), size))
-    return found
+        result.append((kind, place @ frame(_numbers(geom, "pos")), size))
+    return result
 
 
 def _numbers(element: Element, key: str) -> Floats:

@@ -191,11 +191,11 @@ class BodyContactTracker:
     def forces(self, steps: int) -> tuple[ContactForce, ...]:
         """Return the mean forces of the last ``steps`` engine steps, and reset them."""
         found = []
-        for (first, second, one, limb), (force, depth, point) in self._sums.items():
+        for (first, second, item, limb), (force, depth, point) in self._sums.items():
             mean = force / steps
             size = _size(mean)
             found.append(
-                ContactForce(first, second, one, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
+                ContactForce(first, second, item, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
             )
         self._sums = {}
         return tuple(sorted(found))

@@ -137,7 +137,7 @@ def build_mjcf_model(
 
 def _torques(robot: Robot) -> dict[str, float]:
     """Return the largest torques [N m] of the motors that drive and steer wheels; without a limit, enough to spin."""
-    found = {}
+    torques = {}
     for wheel in robot.wheels:
         for joint in (wheel.joint if wheel.driven else "", wheel.steering):
             if joint:
@@ -145,8 +145,8 @@ def _torques(robot: Robot) -> dict[str, float]:
                 limited = math.isfinite(effort) and effort > 0.0
                 speed = float(getattr(robot.drive, "max_speed", 0.0)) / wheel.radius
                 spin = GRAVITY * robot.model.mass * wheel.radius + resistance(robot.model.joints[joint], speed)
-                found[joint] = effort if limited else spin
-    return found
+                torques[joint] = effort if limited else spin
+    return torques
 
 
 def _firm(model: Any, bearing: Collection[str], skidding: Collection[str]) -> None:

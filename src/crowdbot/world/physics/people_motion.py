@@ -113,11 +113,11 @@ class PeopleMotion:
             return
         first, seed = len(self.afoot), self.gait.seed
         more = [People.sample(1, stream(seed, "people", "agent", agent)) for agent in new]
-        persons, variation = self.people.persons, np.concatenate([one.variation for one in more])
+        persons, variation = self.people.persons, np.concatenate([item.variation for item in more])
         self.people = People(
-            (*persons[:first], *(one.persons[0] for one in more), *persons[first:]),
+            (*persons[:first], *(item.persons[0] for item in more), *persons[first:]),
             np.insert(self.people.variation, first, variation),
-            np.insert(self.people.height, first, np.concatenate([one.height for one in more])),
+            np.insert(self.people.height, first, np.concatenate([item.height for item in more])),
             self.people.clips,
             self.people.own,
         )
@@ -214,10 +214,10 @@ class PeopleMotion:
             ends: limb ends of all people in the world; None: the current ones.
         """
         points = self.ends if ends is None else ends
-        found = np.zeros((scene.shape[1], *points.shape[1:]))
+        result = np.zeros((scene.shape[1], *points.shape[1:]))
         place = np.pad(scene.position[0, self.agents], ((0, 0), (0, 1)))
-        found[self.agents] = points - np.tile(place, 2)[:, None]
-        return found
+        result[self.agents] = points - np.tile(place, 2)[:, None]
+        return result
 
     def limb_mass(self, agent: int, limb: str, point: Floats, normal: Floats, ends: Floats | None = None) -> float:
         """Return the mass [kg] that a limb of a person has in an impact, see :func:`crowdbot.humans.striking_mass`.
@@ -267,13 +267,13 @@ class PeopleMotion:
         rows = np.flatnonzero(self._looks) if len(self._looks) == len(self.agents) else np.empty(0, dtype=np.int64)
         robots = np.flatnonzero(scene.active[0] & scene.external[0])
         robots = robots[self.row[robots] < 0]
-        found = {}
+        nearest_robots = {}
         for row in rows:
             away = scene.position[0, robots] - scene.position[0, self.agents[row]]
             if len(away):
                 place = scene.position[0, robots[int(np.argmin(np.sum(away * away, axis=1)))]]
-                found[int(row)] = np.array([place[0], place[1], GAZE])
-        return found
+                nearest_robots[int(row)] = np.array([place[0], place[1], GAZE])
+        return nearest_robots
 
     @property
     def _looks(self) -> NDArray[np.bool_]:
@@ -281,5 +281,5 @@ class PeopleMotion:
         return np.zeros(0, dtype=np.bool_) if state is None else state.wish == LOOK
 
     def _measured(self, state: Gaits) -> tuple[Floats, Floats]:
-        found = self.people.limbs(self.posture(state))
-        return np.concatenate([found.start, found.end], axis=-1), found.radius
+        limbs = self.people.limbs(self.posture(state))
+        return np.concatenate([limbs.start, limbs.end], axis=-1), limbs.radius

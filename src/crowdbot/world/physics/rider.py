@@ -43,11 +43,11 @@ def _seated(robot: Robot, name: str, height: float) -> Robot:
     people = People.of([name], height=[height])
     gait = Gait(people, 0, seat=[WHEELCHAIR])
     state = gait.start(np.zeros((1, 2)), np.zeros(1), np.zeros((1, 2)), ["sit"])
-    found = people.limbs(gait.posture(state))
+    limbs = people.limbs(gait.posture(state))
     links, joints = dict(robot.model.links), dict(robot.model.joints)
     for k, limb in enumerate(LIMBS):
         part = RIDER + limb.name
-        links[part] = _limb(part, found.start[0, k], found.end[0, k], float(found.radius[0, k]), people.limb_mass[0, k])
+        links[part] = _limb(part, limbs.start[0, k], limbs.end[0, k], float(limbs.radius[0, k]), people.limb_mass[0, k])
         joints[part] = Joint(part, "fixed", robot.model.root, part, np.eye(4), np.array([0.0, 0.0, 1.0]))
     return dataclasses.replace(robot, model=dataclasses.replace(robot.model, links=links, joints=joints))
 

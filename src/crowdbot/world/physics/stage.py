@@ -102,10 +102,10 @@ class CubeBody(PropBody):
     def body(self, name: str) -> Element:
         """Return the object as an MJCF body."""
         half = 0.5 * self.size
-        found = self._standing(name, half)
+        element = self._standing(name, half)
         if not self.fixed:
             inertia = self.mass * self.size**2 / 6.0
-            found.children += [
+            element.children += [
                 Element("freejoint", {"name": name}),
                 Element("inertial", {"pos": "0 0 0", "mass": row((self.mass,)), "diaginertia": row([inertia] * 3)}),
             ]
@@ -115,8 +115,8 @@ class CubeBody(PropBody):
             "friction": row((self.friction, 0.005, 0.0001)),
             "priority": "1",
         }  # its own friction instead of that of the floor
-        found.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **layer}))
-        return found
+        element.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **layer}))
+        return element
 
     def outline(self) -> Floats | None:
         """Return the outline that people avoid; None for a movable box."""
@@ -133,16 +133,16 @@ class TableBody(PropBody):
 
     def body(self, name: str) -> Element:
         """Return the object as an MJCF body."""
-        found = self._standing(name, 0.0)
+        element = self._standing(name, 0.0)
         shared = {"type": "box", "rgba": "0.62 0.44 0.30 1", "group": "0", **STANDING}
         top = {"pos": row((0.0, 0.0, self.height - LEG / 2)), "size": row((self.length / 2, self.width / 2, LEG / 2))}
-        found.children.append(Element("geom", {"name": f"{name}/0", **shared, **top}))
+        element.children.append(Element("geom", {"name": f"{name}/0", **shared, **top}))
         tall = (self.height - LEG) / 2
         corners = [(a * (self.length - LEG) / 2, b * (self.width - LEG) / 2) for a in (-1, 1) for b in (-1, 1)]
         for number, (x, y) in enumerate(corners):
             leg = {"pos": row((x, y, tall)), "size": row((LEG / 2, LEG / 2, tall))}
-            found.children.append(Element("geom", {"name": f"{name}/{number + 1}", **shared, **leg}))
-        return found
+            element.children.append(Element("geom", {"name": f"{name}/{number + 1}", **shared, **leg}))
+        return element
 
     def outline(self) -> Floats | None:
         """Return the outline that people avoid."""
@@ -159,15 +159,15 @@ class TreeBody(PropBody):
 
     def body(self, name: str) -> Element:
         """Return the object as an MJCF body."""
-        found = self._standing(name, 0.0)
+        element = self._standing(name, 0.0)
         stem = max(0.3 * self.height, self.height - 1.6 * self.crown)
         wood = {"type": "cylinder", "size": row((self.trunk, stem / 2)), "pos": row((0.0, 0.0, stem / 2))}
-        found.children.append(Element("geom", {"name": f"{name}/0", "rgba": BARK, "group": "0", **wood, **STANDING}))
+        element.children.append(Element("geom", {"name": f"{name}/0", "rgba": BARK, "group": "0", **wood, **STANDING}))
         tall = 0.5 * (self.height - stem) + 0.2 * self.crown
         leaves = {"type": "ellipsoid", "size": row((self.crown, self.crown, tall))}
         leaves |= {"pos": row((0.0, 0.0, self.height - tall)), "rgba": LEAF, "group": "0"}
-        found.children.append(Element("geom", {"name": f"{name}/1", "contype": "0", "conaffinity": "0", **leaves}))
-        return found
+        element.children.append(Element("geom", {"name": f"{name}/1", "contype": "0", "conaffinity": "0", **leaves}))
+        return element
 
     def outline(self) -> Floats | None:
         """Return the outline that people avoid."""

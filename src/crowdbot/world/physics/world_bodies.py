@@ -105,13 +105,13 @@ class WorldBodies:
             self.starts = self.starts if starts is None else dict(starts)
             self.slots = self.slots if slots is None else slots
             self.walls = self.walls if walls is None else walls
-            designs = [self._main_design(ghostly), *(self._alone(one) for one in ghostly if one in self.starts)]
+            designs = [self._main_design(ghostly), *(self._alone(item) for item in ghostly if item in self.starts)]
             for design in designs:
                 compile_bodies(design)
         except Exception:
             self.stage, self.starts, self.slots, self.walls = before
             raise
-        self._rebuild(before[0], [one for one in ghostly if one in self.starts])
+        self._rebuild(before[0], [item for item in ghostly if item in self.starts])
 
     def picture(self) -> RigidBodies:
         """Return all bodies in one part in their current state, for a picture that shows ghosts."""

@@ -88,11 +88,11 @@ class RobotReactions:
     @functools.cached_property
     def _table(self) -> tuple[NDArray[np.int64], Floats]:
         rows = [
-            (one.distance, one.duration, one.pause, one.speed, one.gap, one.repulsion, one.range,
-             math.cos(0.5 * one.field_of_view))
-            for one in self.reactions
+            (reaction.distance, reaction.duration, reaction.pause, reaction.speed, reaction.gap, reaction.repulsion, reaction.range,
+             math.cos(0.5 * reaction.field_of_view))
+            for reaction in self.reactions
         ]  # fmt: skip
-        codes = np.array([one.code for one in self.reactions], dtype=np.int64)
+        codes = np.array([reaction.code for reaction in self.reactions], dtype=np.int64)
         return codes, np.array(rows, dtype=np.float64).reshape(-1, 8)
 
     def start(self, scene: Scene, flow: PeopleFlow) -> Scene:
@@ -177,7 +177,7 @@ class RobotReactions:
 
     def _views(self, step: Step, robots: Sequence[int], code: Floats) -> Step:
         """Return a step in which some people see no robots, or robots that stand still."""
-        present = {one.kind for one in self.reactions}
+        present = {reaction.kind for reaction in self.reactions}
         views = [kind for kind in ("ignore", "impassive") if kind in present]
         if not views:
             return step

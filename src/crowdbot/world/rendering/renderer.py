@@ -97,10 +97,10 @@ class Renderer:
         cls, whole: MjcfModel, robots: Mapping[int, Robot], stage: PhysicsStage, motion: PeopleMotion, scene: Scene
     ) -> Renderer:
         """Return the renderer of a physics world."""
-        found = cls.__new__(cls)
-        found._made(whole, robots, stage, motion, 1)
-        found._scene = scene
-        return found
+        renderer = cls.__new__(cls)
+        renderer._made(whole, robots, stage, motion, 1)
+        renderer._scene = scene
+        return renderer
 
     def _made(
         self, whole: MjcfModel, robots: Mapping[int, Robot], stage: PhysicsStage, motion: PeopleMotion, detail: int
@@ -228,9 +228,9 @@ class Renderer:
         return known[1]
 
     def _carrier(self, camera: SceneCamera, looks: Visuals | SoftwareVisuals) -> Floats:
-        found = np.eye(4)
+        carrier = np.eye(4)
         if camera.robot is None:
-            return found
+            return carrier
         if camera.robot not in self.robots:
             raise InputError(f"agent {camera.robot} is not a robot; robots are {sorted(self.robots) or 'none'}")
         robot = self.robots[camera.robot]
@@ -238,8 +238,8 @@ class Renderer:
         if link not in robot.model.links:
             raise InputError(f"{robot.name} has no link {link!r}{did_you_mean(link, robot.model.links)}")
         site = looks.data.site(self._whole.prefixes[camera.robot] + link)
-        found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos
-        return found
+        carrier[:3, :3], carrier[:3, 3] = site.xmat.reshape(3, 3), site.xpos
+        return carrier
 
 
 def _checked(scene: Scene) -> None:
@@ -263,7 +263,7 @@ def keypoint_labels(
         lens, pose: camera, E = 1, looking along x.
         depth, hit: images without distortion ``[H, W]``.
     """
-    found = np.zeros((len(active), 17, 3))
+    result = np.zeros((len(active), 17, 3))
     places = keypoint_places(motion.people, motion.posture())
     for row, agent in enumerate(motion.agents.tolist()):
         if not active[agent]:
@@ -280,8 +280,8 @@ def keypoint_labels(
         bent_x, bent_y = lens.distort(x, y)
         column, line = bent_x * lens.fx + lens.cx, bent_y * lens.fy + lens.cy
         inside &= (column >= -0.5) & (line >= -0.5) & (column < lens.width - 0.5) & (line < lens.height - 0.5)
-        found[agent] = np.where(inside[:, None], np.stack([column, line, 1.0 + seen], axis=1), 0.0)
-    return found
+        result[agent] = np.where(inside[:, None], np.stack([column, line, 1.0 + seen], axis=1), 0.0)
+    return result
 
 
 def box_labels(motion: PeopleMotion, active: NDArray[np.bool_]) -> Floats:
@@ -289,10 +289,10 @@ def box_labels(motion: PeopleMotion, active: NDArray[np.bool_]) -> Floats:
 
     The box encloses skin and clothes and has the heading of the trunk; agents that are no people have NaN.
     """
-    found = np.full((len(active), 7), np.nan)
+    result = np.full((len(active), 7), np.nan)
     here = np.flatnonzero(active[motion.agents])
     if not len(here):
-        return found
+        return result
     skins = motion.skin(2, here)
     worn = motion.people.clothing_mask(2)
     for skin, row in zip(skins, here.tolist(), strict=True):
@@ -301,5 +301,5 @@ def box_labels(motion: PeopleMotion, active: NDArray[np.bool_]) -> Floats:
         turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
         points = skin[np.unique(motion.people.faces(2)[worn[row]])] @ turn
         low, high = points.min(axis=0), points.max(axis=0)
-        found[motion.agents[row]] = *(turn @ (0.5 * (low + high))), *(high - low), heading
-    return found
+        result[motion.agents[row]] = *(turn @ (0.5 * (low + high))), *(high - low), heading
+    return result

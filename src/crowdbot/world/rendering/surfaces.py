@@ -36,16 +36,16 @@ def periodic_noise(name: str, cells: int, octaves: int = 4, size: int = SIZE) ->
 
 def _interpolated(grid: Floats, size: int) -> Floats:
     """Return a periodic grid, smoothly interpolated to ``[size, size]``."""
-    found = grid
+    result = grid
     for axis in (0, 1):
         place = np.arange(size) * (grid.shape[axis] / size)
         first = np.floor(place).astype(np.int64)
         share = place - first
         share = share * share * (3.0 - 2.0 * share)
-        a, b = (np.take(found, (first + k) % grid.shape[axis], axis=axis) for k in (0, 1))
+        a, b = (np.take(result, (first + k) % grid.shape[axis], axis=axis) for k in (0, 1))
         share = share[:, None] if axis == 0 else share
-        found = a + share * (b - a)
-    return found
+        result = a + share * (b - a)
+    return result
 
 
 def _painted(light: Floats, color: Color = (1.0, 1.0, 1.0), other: Floats | None = None) -> Bytes:

@@ -86,15 +86,15 @@ def read_controllers(path: Path) -> list[ControllerFile]:
     for keys in rows:  # a file of parameters alone does not give types
         if len(keys) > 1 and keys[-1] in ("left_wheel_names", "left_wheel") and keys[-2] not in kinds:
             kinds[keys[-2]] = f"{keys[-2]} diff_drive"
-    found = []
+    controller_files = []
     for name, kind in kinds.items():
         if not any(word in kind.lower() for word in DRIVES):
             continue
         mine = {".".join(keys[keys.index(name) + 1 :]): value for keys, value in rows.items() if name in keys[:-1]}
         values = _values(mine)
         if values or any(key in mine for key in WHEELS):
-            found.append(ControllerFile(name, kind, str(path), values, _joints(mine)))
-    return found
+            controller_files.append(ControllerFile(name, kind, str(path), values, _joints(mine)))
+    return controller_files
 
 
 def _flatten(value: Any, keys: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any]]:
@@ -109,16 +109,16 @@ def _flatten(value: Any, keys: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...
 
 def _values(rows: Mapping[str, Any]) -> dict[str, float]:
     """Return the numbers above 0 whose limit is switched on."""
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for key, name in NUMBERS.items():
         value = _positive(rows.get(key))
         if value is not None and rows.get(SWITCHES.get(key, ""), True) is not False:
-            found.setdefault(name, value)
+            values.setdefault(name, value)
     for key, name in OF_WHEELS.items():
         value = _positive(rows.get(key))
-        if value is not None and "radius" in found:
-            found.setdefault(name, value * found["radius"])
-    return found
+        if value is not None and "radius" in values:
+            values.setdefault(name, value * values["radius"])
+    return values
 
 
 def _positive(value: Any) -> float | None:
@@ -133,7 +133,7 @@ def _joints(rows: Mapping[str, Any]) -> tuple[str, ...]:
     for key in WHEELS:
         value = rows.get(key)
         rows_of = value if isinstance(value, list) else [value]
-        names += [LAUNCH_ARGUMENT.sub("", one) for one in rows_of if isinstance(one, str)]
+        names += [LAUNCH_ARGUMENT.sub("", item) for item in rows_of if isinstance(item, str)]
     return tuple(dict.fromkeys(names))
 
 
@@ -153,7 +153,7 @@ def find_controller_files(
         find: returns the path of a file that the robot file names, or None.
     """
     remarks: list[str] = []
-    for plugin in [one for outer in root.each("gazebo") for one in outer.each("plugin")]:
+    for plugin in [item for outer in root.each("gazebo") for item in outer.each("plugin")]:
         for inner in plugin.each("parameters"):
             try:
                 path = find(inner.stray.strip())
@@ -167,7 +167,11 @@ def find_controller_files(
                 return rows, remarks
     for path in _beside(source):
         try:
-            rows = [one for one in read_controllers(path) if one.joints and set(one.joints) <= set(joints)]
+            rows = [
+                controller
+                for controller in read_controllers(path)
+                if controller.joints and set(controller.joints) <= set(joints)
+            ]
         except InputError:  # a YAML file of something else
             continue
         if rows:
@@ -195,8 +199,8 @@ def _is_near(path: Path, home: Path) -> bool:
 
 def read_joint_limits(root: Element) -> dict[str, JointLimits]:
     """Return the limits of commands in ``<ros2_control>`` by joint."""
-    found: dict[str, JointLimits] = {}
-    for joint in [one for outer in root.each("ros2_control") for one in outer.each("joint")]:
+    joint_limits: dict[str, JointLimits] = {}
+    for joint in [item for outer in root.each("ros2_control") for item in outer.each("joint")]:
         limits = JointLimits()
         for interface in joint.each("command_interface"):
             kind = interface.attributes.get("name", "")
@@ -204,8 +208,8 @@ def read_joint_limits(root: Element) -> dict[str, JointLimits]:
             if kind in ("velocity", "position") and largest > 0.0:
                 limits = limits._replace(**{kind: min(largest, getattr(limits, kind))})
         if limits != JointLimits():
-            found[joint.attributes.get("name", "")] = limits
-    return found
+            joint_limits[joint.attributes.get("name", "")] = limits
+    return joint_limits
 
 
 def _largest(interface: Element) -> float:

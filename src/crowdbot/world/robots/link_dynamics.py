@@ -51,8 +51,8 @@ def read_link(row: Mapping[str, str]) -> LinkDynamics:
     """
     for problem in attribute_problems(LinkDynamics, dict(row), ()).values():
         raise InputError(problem)
-    found: LinkDynamics = from_attributes(LinkDynamics, dict(row))
-    return found
+    link_dynamics: LinkDynamics = from_attributes(LinkDynamics, dict(row))
+    return link_dynamics
 
 
 def link_problem(link: LinkDynamics, model: RobotModel) -> str:

@@ -190,10 +190,10 @@ class Robot:
         >>> Robot.load("cuybot").outline.tolist()
         [[-0.2865, -0.266], [0.2865, -0.266], [0.2865, 0.266], [-0.2865, 0.266]]
         """
-        found = outline_of(self.footprint)
-        if found is not None:
-            found.flags.writeable = False
-        return found
+        result = outline_of(self.footprint)
+        if result is not None:
+            result.flags.writeable = False
+        return result
 
     @property
     def half_width(self) -> float:

@@ -41,7 +41,7 @@ def _without_capsules(text: str) -> str:
     """Return the text of a robot whose capsules are cylinders with spheres at their ends."""
     root = ElementTree.fromstring(text)  # noqa: S314, a file that read_urdf has accepted has no entities
     for link in root.iter("link"):
-        for part in [one for one in link if one.tag in ("visual", "collision")]:
+        for part in [item for item in link if item.tag in ("visual", "collision")]:
             capsule = part.find("geometry/capsule")
             if capsule is None:
                 continue
@@ -52,7 +52,7 @@ def _without_capsules(text: str) -> str:
                 ElementTree.SubElement(ball, "origin", {"xyz": _row(place + end * turn[:, 2]), "rpy": "0 0 0"})
                 shape = ElementTree.SubElement(ball, "geometry")
                 ElementTree.SubElement(shape, "sphere", {"radius": capsule.get("radius", "")})
-                ball.extend(copy.deepcopy(one) for one in part if one.tag not in ("origin", "geometry"))
+                ball.extend(copy.deepcopy(item) for item in part if item.tag not in ("origin", "geometry"))
                 link.insert(number, ball)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 

@@ -164,7 +164,7 @@ def _parameters(
     """Return the parameters of plugins and controller files; a controller file comes first."""
     parameters, remarks = read_drive_parameters(document.root), []
     if controllers:
-        found = [one for path in controllers for one in read_controllers(path)]
+        found = [controller for path in controllers for controller in read_controllers(path)]
         if not found:
             remarks.append(f"no controller in {', '.join(str(path) for path in controllers)} moves the base")
     else:
@@ -382,8 +382,8 @@ def _steering(done: _Conversion) -> tuple[float, str, str]:
 def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
     """Add the sensors of Gazebo tags, and those that links are named after."""
     change, model = "<sensor> in robot.xml", done.model
-    found = find_sensors(source)
-    for one in found:
+    sensors = find_sensors(source)
+    for one in sensors:
         link = one.link or model.root
         if not one.attributes or link not in model.links:
             why = "there is no such link" if one.attributes else "its type is not supported"
@@ -391,9 +391,9 @@ def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
             continue
         root.children.append(Element("sensor", {"name": one.name, "link": link} | one.attributes))
         done.table.add(f"sensor {one.name}", one.attributes["type"], one.source, change)
-    for one in guess_sensors(tuple(model.links), found):
-        root.children.append(Element("sensor", {"name": one.name, "link": one.link} | one.attributes))
-        done.table.add(f"sensor {one.name}", one.attributes["type"], one.source, change, GUESS)
+    for sensor in guess_sensors(tuple(model.links), sensors):
+        root.children.append(Element("sensor", {"name": sensor.name, "link": sensor.link} | sensor.attributes))
+        done.table.add(f"sensor {sensor.name}", sensor.attributes["type"], sensor.source, change, GUESS)
     if not root.each("sensor"):
         done.table.add("sensors", "none", "no <sensor> in <gazebo> tags", change, DERIVED)
 

@@ -89,11 +89,11 @@ def _steering(body: RobotBody, geometry: WheelGeometry) -> list[float]:
     """Return the angle of each wheel to the left [rad], 0 without steering."""
     model, places = body.robot.model, body.joints()
     poses = model.poses(body.robot.posture)
-    found = []
+    steering = []
     for name in geometry.steering:
         upwards = not name or (poses[model.joints[name].child][:3, :3] @ model.joints[name].axis)[2] > 0.0
-        found.append((1.0 if upwards else -1.0) * places[name][0] if name else 0.0)
-    return found
+        steering.append((1.0 if upwards else -1.0) * places[name][0] if name else 0.0)
+    return steering
 
 
 def joint_states(

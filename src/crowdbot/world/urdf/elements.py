@@ -95,22 +95,22 @@ class UrdfReader:
         if text is None:
             return default
         try:
-            found = parse_number(text)
+            number = parse_number(text)
         except InputError as error:
             self.say(element, f'{key}="{text[:40]}" {error}')
             return default
-        if found < least:
+        if number < least:
             self.say(element, f'{key}="{text[:40]}" must be at least {least:g}')
             return default
-        return found
+        return number
 
     def optional_value(self, element: Element, key: str, least: float = -np.inf) -> float:
         """Return the number of an attribute that few robots have; 0 without one, or with a remark if it is invalid."""
         text = element.attributes.get(key, "0")
         try:
-            found = parse_number(text)
-            if found >= least:
-                return found
+            number = parse_number(text)
+            if number >= least:
+                return number
             problem = f"must be at least {least:g}"
         except InputError as error:
             problem = str(error)

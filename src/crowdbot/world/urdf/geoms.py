@@ -86,7 +86,7 @@ class Geoms:
                 geoms.append(Element("geom", {"name": name, **tire, **values}))
                 continue
             geoms += self._parse_shape(part, matrix, name, values, gliding or _rolls(part, matrix, axle))
-        for number, part in enumerate(one for visual in link.visuals for one in self._painted(visual)):
+        for number, part in enumerate(item for visual in link.visuals for item in self._painted(visual)):
             values = {"group": "2", "contype": "0", "conaffinity": "0", "rgba": row(part.color or GREY)}
             geoms += self._parse_shape(part, matrix, f"{self.prefix}{link.name}/seen/{number}", values)
         return geoms
@@ -113,7 +113,7 @@ class Geoms:
                 one = Mesh(mesh.source, mesh.vertices, mesh.faces[plain][which == k])
                 rows.append((one, tuple((color / 255.0).tolist())))
             self._parts[id(mesh)] = rows
-        return [LinkShape(one, part.origin, part.name, color) for one, color in self._parts[id(mesh)]]
+        return [LinkShape(item, part.origin, part.name, color) for item, color in self._parts[id(mesh)]]
 
     def _parse_shape(
         self, part: LinkShape, matrix: Floats, name: str, values: dict[str, str], wheel: bool = False
@@ -128,8 +128,8 @@ class Geoms:
             values["material"] = self._material(part.shape.textures[0])
         names = [name if k == 0 else f"{name}.{k}" for k in range(len(files))]
         return [
-            Element("geom", {"name": one, "type": "mesh", "mesh": file, **placed, **values})
-            for one, file in zip(names, files, strict=True)
+            Element("geom", {"name": name, "type": "mesh", "mesh": file, **placed, **values})
+            for name, file in zip(names, files, strict=True)
         ]
 
     def _mesh(self, mesh: Mesh, collision: bool) -> list[str]:

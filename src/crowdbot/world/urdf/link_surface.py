@@ -52,7 +52,7 @@ def link_surface(link: Link) -> LinkSurface | None:
     >>> surface.vertices.shape[1], bool(surface.faces.max() < len(surface.vertices)), surface.colors.dtype.name
     (3, True, 'uint8')
     """
-    parts = [_placed(one) for one in link.visuals or link.collisions]
+    parts = [_placed(visual) for visual in link.visuals or link.collisions]
     if not parts:
         return None
     starts = np.cumsum([0] + [len(vertices) for vertices, _, _ in parts])
@@ -67,8 +67,8 @@ def link_surface(link: Link) -> LinkSurface | None:
 def _textured(link: Link, parts: list[tuple[Floats, Ints, NDArray[np.uint8]]]) -> tuple[Floats, tuple[Texture, ...]]:
     """Return texture coordinates of all vertices, and the textures with the numbers of their triangles."""
     coordinates, textures, first = [], [], 0
-    for one, (vertices, faces, _) in zip(link.visuals or link.collisions, parts, strict=True):
-        mesh = one.shape if isinstance(one.shape, Mesh) and one.color is None else None
+    for visual, (vertices, faces, _) in zip(link.visuals or link.collisions, parts, strict=True):
+        mesh = visual.shape if isinstance(visual.shape, Mesh) and visual.color is None else None
         uv = None if mesh is None else mesh.uv
         coordinates.append(np.zeros((len(vertices), 2)) if uv is None else uv)
         for image in () if mesh is None or uv is None else mesh.textures:

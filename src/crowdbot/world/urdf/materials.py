@@ -11,14 +11,14 @@ from .mesh_colors import mean_color
 def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
     """Return the colours of the materials of the robot and of named materials in visuals, by name."""
     inside = [m for link in root.each("link") for visual in link.each("visual") for m in visual.each("material")]
-    found: dict[str, Color] = {}
+    materials: dict[str, Color] = {}
     for element in [*root.each("material"), *inside]:
         name = element.attributes.get("name", "")
-        if name and name not in found:
+        if name and name not in materials:
             color = _color(reader, element)
             if color is not None:
-                found[name] = color
-    return found
+                materials[name] = color
+    return materials
 
 
 def read_color(reader: UrdfReader, visual: Element) -> Color | None:

@@ -74,11 +74,11 @@ class MeshFiles:
         last = plain.rpartition("/")[2]
         names = [plain, last] if last not in ("", plain) else [plain]
         problem: InputError | None = None
-        for one in names:
-            if re.match(r"(?i)[a-z]:|https?:", one):
+        for item in names:
+            if re.match(r"(?i)[a-z]:|https?:", item):
                 continue
             try:
-                path = self.folders.find(one, beside)
+                path = self.folders.find(item, beside)
             except InputError as error:
                 if "outside the robot folder" not in str(error):
                     return None

@@ -144,7 +144,7 @@ class _SceneReader:
             raise InputError("its nodes contain themselves")
         if id(node) not in counts:
             below = [*node.children, *(self.nodes[name] for name in node.uses if name in self.nodes)]
-            counts[id(node)] = node.shapes[0] + sum(self.count(one, (*above, id(node)), counts) for one in below)
+            counts[id(node)] = node.shapes[0] + sum(self.count(item, (*above, id(node)), counts) for item in below)
         return counts[id(node)]
 
 

@@ -55,15 +55,18 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files:
         raise InputError(f"it is larger than {MOST_BYTES} bytes, the maximum; simplify the mesh")
     data = path.read_bytes()
     check_mesh_bytes(data, kind, path.name)
-    found = _load_trimesh(data, kind, scale, files)
-    vertices, faces = np.asarray(found.whole.vertices, dtype=np.float64), np.asarray(found.whole.faces, dtype=np.int64)
+    trimesh = _load_trimesh(data, kind, scale, files)
+    vertices, faces = (
+        np.asarray(trimesh.whole.vertices, dtype=np.float64),
+        np.asarray(trimesh.whole.faces, dtype=np.int64),
+    )
     if not len(faces):
         raise InputError("it has no triangles")
     if vertices.shape[1:] != (3,) or faces.shape[1:] != (3,):
         raise InputError(f"its points have {vertices.shape[-1]} coordinates, 3 are required")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
-    colors, uv, textures = join_colors(found.parts)
+    colors, uv, textures = join_colors(trimesh.parts)
     if colors is not None and len(colors) != len(faces):
         return Mesh(source, vertices, faces)
     return Mesh(source, vertices, faces, colors=colors, uv=uv, textures=textures)
@@ -158,9 +161,9 @@ def _unit(data: bytes) -> float:
     """Return the length unit of a DAE file [m]."""
     import re
 
-    found = re.search(rb"<unit[^>]*\bmeter\s*=\s*[\"']([0-9.eE+-]{1,20})[\"']", data)
+    match = re.search(rb"<unit[^>]*\bmeter\s*=\s*[\"']([0-9.eE+-]{1,20})[\"']", data)
     try:
-        value = float(found.group(1)) if found else 1.0
+        value = float(match.group(1)) if match else 1.0
     except ValueError:
         return 1.0
     return value if 1e-6 <= value <= 1e6 else 1.0
@@ -212,12 +215,12 @@ def load_or_compute_pieces(mesh: Mesh, settings: str, compute: Callable[[Mesh], 
         compute: returns the pieces.
     """
     path = cache_root() / "convex" / f"{_key(mesh, settings)}.npz"
-    found = _load(path)
-    if found is None:
-        found = compute(mesh)
-        if found:
-            _store(path, found)
-    return found
+    pieces = _load(path)
+    if pieces is None:
+        pieces = compute(mesh)
+        if pieces:
+            _store(path, pieces)
+    return pieces
 
 
 def _key(mesh: Mesh, settings: str) -> str:

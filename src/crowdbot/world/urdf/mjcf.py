@@ -287,7 +287,7 @@ def _mass(build: _Build, fixed: Mapping[str, Floats], joint: Joint | None) -> li
 def _excluded(build: _Build) -> list[Element]:
     names = build.collision
     return [
-        Element("exclude", {"body1": one, "body2": other}) for k, one in enumerate(names) for other in names[k + 1 :]
+        Element("exclude", {"body1": name, "body2": other}) for k, name in enumerate(names) for other in names[k + 1 :]
     ]
 
 

@@ -216,20 +216,20 @@ class RobotModel:
             if leader or self.joints[name].kind == "fixed":
                 why = f"follows {leader.joint!r}" if leader else "is fixed"
                 raise InputError(f"the joint {name!r} of {self.name} {why}; its position cannot be set")
-        found: dict[str, Floats] = {}
+        result: dict[str, Floats] = {}
 
         def resolve(name: str) -> Floats:
-            if name not in found:
+            if name not in result:
                 joint = self.joints[name]
                 if joint.mimic:
-                    found[name] = joint.mimic.multiplier * resolve(joint.mimic.joint) + joint.mimic.offset
+                    result[name] = joint.mimic.multiplier * resolve(joint.mimic.joint) + joint.mimic.offset
                 else:
-                    found[name] = np.atleast_1d(np.asarray(given.get(name, joint.rest_position()), dtype=np.float64))
-            return found[name]
+                    result[name] = np.atleast_1d(np.asarray(given.get(name, joint.rest_position()), dtype=np.float64))
+            return result[name]
 
         for name in self.joints:
             resolve(name)
-        return found
+        return result
 
     def poses(self, positions: Mapping[str, ArrayLike] | None = None) -> dict[str, Floats]:
         """Return the frames ``[4, 4]`` of all links in the frame of the root.
@@ -241,10 +241,10 @@ class RobotModel:
             InputError: a name is not a movable joint, or a position is not finite. Limits are not checked.
         """
         places = self.positions(positions)
-        found = {self.root: np.eye(4)}
+        result = {self.root: np.eye(4)}
         for joint in self.joints.values():
-            found[joint.child] = found[joint.parent] @ joint.origin @ joint.motion(places[joint.name])
-        return found
+            result[joint.child] = result[joint.parent] @ joint.origin @ joint.motion(places[joint.name])
+        return result
 
     def inertial(self, positions: Mapping[str, ArrayLike] | None = None) -> LinkInertia:
         """Return total mass, centre of mass and inertia in the frame of the root."""

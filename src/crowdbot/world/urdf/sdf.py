@@ -52,7 +52,7 @@ def urdf_of_sdf(root: Element, place: str) -> SdfConversion:
 
 
 def _inside(element: Element, outer: str, inner: str) -> list[Element]:
-    return [one for each in element.each(outer) for one in each.each(inner)]
+    return [item for each in element.each(outer) for item in each.each(inner)]
 
 
 def _one(element: Element | None, *path: str) -> Element | None:
@@ -65,10 +65,10 @@ class _Converter:
     def __init__(self, model: Element, place: str) -> None:
         self.model, self.place = model, place
         self.ignored: list[str] = []
-        self.links = {one.attributes.get("name", ""): one for one in model.each("link")}
-        self.joints = {one.attributes.get("name", ""): one for one in model.each("joint")}
-        self.frames = {one.attributes.get("name", ""): one for one in model.each("frame")}
-        self.above = {self.text(one, "child"): one for one in self.joints.values()}
+        self.links = {item.attributes.get("name", ""): item for item in model.each("link")}
+        self.joints = {item.attributes.get("name", ""): item for item in model.each("joint")}
+        self.frames = {item.attributes.get("name", ""): item for item in model.each("frame")}
+        self.above = {self.text(joint, "child"): joint for joint in self.joints.values()}
         self._poses: dict[str, Floats] = {}
         self._active: list[str] = []
 
@@ -187,7 +187,7 @@ class _Converter:
                     row = {"name": part.attributes["name"]} if "name" in part.attributes else {}
                     made.children.append(self.element(part, tag, row, origin, geometry, *self.material(part, tag)))
         root.children.append(made)
-        friction = next((_one(one, "surface", "friction", "ode", "mu") for one in link.each("collision")), None)
+        friction = next((_one(item, "surface", "friction", "ode", "mu") for item in link.each("collision")), None)
         if friction is not None and friction.stray:
             value = self.element(friction, "mu1", {"value": friction.stray})
             root.children.append(self.element(link, "gazebo", {"reference": name}, value))
@@ -198,7 +198,7 @@ class _Converter:
                 place = self.origin(sensor, shift @ self.local_pose(sensor)[0]).attributes
                 pose = self.element(sensor, "pose")
                 pose.stray = f"{place['xyz']} {place['rpy']}"
-                copied.children = [pose, *(one for one in copied.children if one.tag != "pose")]
+                copied.children = [pose, *(child for child in copied.children if child.tag != "pose")]
 
     def inertial(self, source: Element, shift: Floats) -> SourceElement:
         """Return <inertial>."""

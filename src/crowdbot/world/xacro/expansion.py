@@ -138,9 +138,9 @@ class _Expander:
             if not key.startswith((PREFIX, "xmlns"))
         }
         stray = self.texts.text(source.stray, scope)
-        found = SourceElement(source.tag, attributes, [], line=source.line, stray=stray, place=source.place)
-        self.fill(source, scope, found)
-        return found
+        source_element = SourceElement(source.tag, attributes, [], line=source.line, stray=stray, place=source.place)
+        self.fill(source, scope, source_element)
+        return source_element
 
     def fill(self, source: SourceElement, scope: Scope, into: SourceElement) -> None:
         """Expand the children of an element into another one."""
@@ -345,18 +345,18 @@ def parse_parameters(text: str) -> tuple[MacroParameter, ...]:
     >>> parse_parameters("side radius:=0.1 *origin")[1]
     MacroParameter(name='radius', forward=False, default='0.1')
     """
-    found: list[MacroParameter] = []
+    macro_parameters: list[MacroParameter] = []
     place, text = 0, text.strip()
     while place < len(text):
         match = PARAMETER.match(text, place)
         if match is not None:
             name, forward, default = match.groups()
-            found.append(MacroParameter(name, bool(forward), default or ("" if not forward else None)))
+            macro_parameters.append(MacroParameter(name, bool(forward), default or ("" if not forward else None)))
         else:
             match = BARE.match(text, place)
             assert match is not None
-            found.append(MacroParameter(match.group(1)))
+            macro_parameters.append(MacroParameter(match.group(1)))
         place = match.end()
-        if len(found) > MOST_PARAMETERS:
+        if len(macro_parameters) > MOST_PARAMETERS:
             raise InputError(f"a macro has more than {MOST_PARAMETERS} parameters")
-    return tuple(found)
+    return tuple(macro_parameters)

@@ -103,6 +103,6 @@ def balance_ability(people: People) -> BalanceAbility:
     rate = np.sqrt(GRAVITY / (PENDULUM * LEG * height))
     center = CENTER * height
     base = height[:, None] * np.array(BASE)
-    lean = center[:, None] * np.sin(maximum_lean([one.years for one in people.persons]))
+    lean = center[:, None] * np.sin(maximum_lean([person.years for person in people.persons]))
     reach = (lean - base) * np.exp(rate * RESPONSE)[:, None]
     return BalanceAbility(rate, center, base, reach)

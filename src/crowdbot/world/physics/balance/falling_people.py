@@ -93,7 +93,7 @@ class FallingPeople:
 
     def poses(self, motion: PeopleMotion, scene: Scene, time: float) -> dict[int, FallPose]:
         """Return the poses of people out of balance at a time [s], by row of their body."""
-        found = {}
+        result = {}
         for agent in np.flatnonzero(self.balance.unsteady).tolist():
             row, phase = int(motion.row[agent]), int(self.balance.phase[agent])
             if row < 0 or not scene.active[0, agent]:
@@ -111,8 +111,8 @@ class FallingPeople:
                 direction = math.atan2(y, x) - float(scene.heading[0, agent])
                 tilt, start = math.asin(min(math.hypot(x, y) / float(self.balance.center[agent]), 0.9)), 0.0
             struck = bool(self._struck[agent])
-            found[row] = FallPose(direction, tilt, start, struck, phase >= FALLING, phase == RISING)
-        return found
+            result[row] = FallPose(direction, tilt, start, struck, phase >= FALLING, phase == RISING)
+        return result
 
     def update(self, motion: PeopleMotion, scene: Scene, time: float, seed: int) -> None:
         """Begin falls of people whose balance is lost, and let others come to rest or get up, at a time [s]."""
@@ -141,7 +141,7 @@ class FallingPeople:
         yaw = float(scene.heading[0, agent])
         self._direction[agent] = math.atan2(away[1], away[0]) - yaw
         word = direction_name(float(self._direction[agent]))
-        earlier = sum(one.person == agent for one in self.falls)
+        earlier = sum(fall.person == agent for fall in self.falls)
         chance = head_probability(word, float(motion.people.persons[row].years))
         struck = bool(stream(seed, "fall", agent, earlier).uniform() < chance)
         self._struck[agent] = struck

@@ -41,14 +41,14 @@ class ForcePushes:
             mass: their masses ``[P]`` [kg].
             balance: balance of all agents; a force acts at the height of the centre of mass.
         """
-        found = np.zeros((len(agents), 2))
+        result = np.zeros((len(agents), 2))
         for k, agent in enumerate(agents.tolist()):
             if agent not in self._left:
                 continue
             acts = min(self._left[agent], self.step)
             change = self._force[agent] * acts
-            found[k] = mass[k] * change / self.step
+            result[k] = mass[k] * change / self.step
             if balance is not None:
                 balance.push(agent, change, float(balance.center[agent]), None)
         self._left = {agent: left - self.step for agent, left in self._left.items() if left - self.step > 1e-12}
-        return found
+        return result

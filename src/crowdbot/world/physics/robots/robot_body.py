@@ -80,7 +80,7 @@ class RobotBody:
         self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
         self._servo = [model.actuator(prefix + name).id for name in BASE_MOTORS] if robot.base == "planar" else []
         joints = [model.joint(f"{prefix}base_{name}") for name in ("x", "y", "yaw")] if self._servo else []
-        self._base = [int(one.qposadr[0]) for one in joints], [int(one.dofadr[0]) for one in joints]
+        self._base = [int(joint.qposadr[0]) for joint in joints], [int(joint.dofadr[0]) for joint in joints]
         free = None if self._servo else model.joint(f"{prefix}base")
         self._free = (0, 0) if free is None else (int(free.qposadr[0]), int(free.dofadr[0]))
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
@@ -181,8 +181,8 @@ class RobotBody:
     def _wheel_rates(self, old: Twists, twist: Twists) -> Floats:
         """Return the speeds of the driven wheels [rad/s] on the way to a twist, with the slip of a skid-steer base."""
         if self._slip is not None and self._slip_state is not None:
-            found = self._slip.wheels(self._slip_state, old.at(0), twist.at(0), self._moved(), self.loads, self.step)
-            return np.asarray(self._rolling @ (found.forward, found.turn, 0.0))
+            wheels = self._slip.wheels(self._slip_state, old.at(0), twist.at(0), self._moved(), self.loads, self.step)
+            return np.asarray(self._rolling @ (wheels.forward, wheels.turn, 0.0))
         return np.asarray(self._rolling @ _row(twist))
 
     def _pull(self, old: Twists) -> None:
@@ -242,13 +242,13 @@ class RobotBody:
 
     def joints(self) -> dict[str, tuple[float, float]]:
         """Return position and velocity of each joint with one coordinate."""
-        found = {}
+        result = {}
         for joint in self.robot.model.joints.values():
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + joint.name)
             if joint.size == 1 and index >= 0:
                 place, speed = self._model.jnt_qposadr[index], self._model.jnt_dofadr[index]
-                found[joint.name] = (float(self._data.qpos[place]), float(self._data.qvel[speed]))
-        return found
+                result[joint.name] = (float(self._data.qpos[place]), float(self._data.qvel[speed]))
+        return result
 
     def frame(self, link: str) -> Floats:
         """Return the frame ``[4, 4]`` of a link in the world.
@@ -259,9 +259,9 @@ class RobotBody:
         if link not in self.robot.model.links:
             raise InputError(f"{self.robot.name} has no link {link!r}{did_you_mean(link, self.robot.model.links)}")
         site = self._data.site(self.prefix + link)
-        found = np.eye(4)
-        found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos
-        return found
+        result = np.eye(4)
+        result[:3, :3], result[:3, 3] = site.xmat.reshape(3, 3), site.xpos
+        return result
 
     def frames(self) -> dict[str, Floats]:
         """Return the frames ``[4, 4]`` of all links in the world."""
@@ -317,9 +317,9 @@ def _row(twist: Twists) -> Floats:
     return np.array([twist.forward[0], twist.turn[0], twist.left[0]])
 
 
-def _same(one: Twists, other: Twists) -> bool:
-    names = [part.name for part in dataclasses.fields(one) if part.init]
-    return type(one) is type(other) and all(getattr(one, name)[0] == getattr(other, name)[0] for name in names)
+def _same(twists: Twists, other: Twists) -> bool:
+    names = [part.name for part in dataclasses.fields(twists) if part.init]
+    return type(twists) is type(other) and all(getattr(twists, name)[0] == getattr(other, name)[0] for name in names)
 
 
 NOWHERE = Pose(np.zeros((1, 2)), np.zeros(1))

@@ -166,19 +166,19 @@ class Twists:
             columns = np.empty((3, count))
             columns[0], columns[1], columns[2] = twist
             return cls.of_columns(columns)
-        found = cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
+        twists = cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
         if cls is Twists:
-            object.__setattr__(found, "_count", count)
-        return found
+            object.__setattr__(twists, "_count", count)
+        return twists
 
     @classmethod
     def of_columns(cls, columns: Floats) -> Twists:
         """Create twists from a C-contiguous array ``[3, E]`` of forward, turn and left, which must not change."""
         if not every(np.isfinite(columns)):
             return cls.of(cls(*columns), columns.shape[1])
-        found = object.__new__(cls)  # half the time of the constructor
-        found.__dict__.update(forward=columns[0], turn=columns[1], left=columns[2], _count=columns.shape[1])
-        return found
+        twists = object.__new__(cls)  # half the time of the constructor
+        twists.__dict__.update(forward=columns[0], turn=columns[1], left=columns[2], _count=columns.shape[1])
+        return twists
 
     def at(self, environment: int) -> Twist:
         """Return the twist in one environment."""
