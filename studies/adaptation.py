@@ -40,28 +40,28 @@ UPDATES = {3: 150, 10: 300, 30: 600}
 def first_minutes(tracks: list[Trajectories], minutes: float) -> tuple[list[Trajectories], float]:
     """Return the first minutes of recordings, one after the other, and how many there are."""
     found, left = [], 60.0 * minutes
-    for one in tracks:
-        seconds = float(one.time[-1])
+    for track in tracks:
+        seconds = float(track.time[-1])
         if left < 10.0:
             break
-        found.append(one if seconds <= left else one.split(left / seconds)[0])
+        found.append(track if seconds <= left else track.split(left / seconds)[0])
         left -= min(seconds, left)
     return found, minutes - left / 60.0
 
 
 def pixel_videos(folder: Path) -> list[Trajectories]:
     """Return the pedestrians of the videos in pixels, in metres at 0.4 s."""
-    found = []
+    trajectories = []
     for video, scale in SCALES.items():
         tracks = load(folder / video / "annotations.txt", transform=scale)
         tracks = tracks.only("Pedestrian").metres() if tracks.units == "px" else tracks.only("Pedestrian")
-        found.append(tracks.resample(STEP))
-    return found
+        trajectories.append(tracks.resample(STEP))
+    return trajectories
 
 
 def samples_of(tracks: list[Trajectories]) -> Samples:
     """Return the samples of recordings."""
-    return Samples.concatenate([Samples.from_windows(*one.windows(), one.name) for one in tracks])
+    return Samples.concatenate([Samples.from_windows(*track.windows(), track.name) for track in tracks])
 
 
 def main() -> None:

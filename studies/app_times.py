@@ -109,10 +109,10 @@ def program(folder: Path, *words: str, cache: Path | None = None) -> Iterator[tu
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
     try:
         assert process.stdout is not None
-        found = re.search(r"http://\S+", process.stdout.readline())
-        if found is None:
+        match = re.search(r"http://\S+", process.stdout.readline())
+        if match is None:
             raise RuntimeError(f"{' '.join(command)}: no address")
-        yield found[0], process.pid, begin
+        yield match[0], process.pid, begin
     finally:
         process.terminate()
         process.wait(60)
@@ -291,9 +291,9 @@ async def _simulated(session: aiohttp.ClientSession, url: str) -> float:
     async with session.ws_connect(url, max_msg_size=0) as socket:
         async for message in socket:
             if message.type == aiohttp.WSMsgType.TEXT:
-                found = json.loads(message.data)
-                if found.get("event") == "hello":
-                    return float(found["data"]["desks"]["simulator"]["status"]["time"])
+                loads = json.loads(message.data)
+                if loads.get("event") == "hello":
+                    return float(loads["data"]["desks"]["simulator"]["status"]["time"])
     raise RuntimeError("the server sends no greeting")
 
 
@@ -340,22 +340,22 @@ def main() -> int:
     parser.add_argument("rows", nargs="*", choices=[*ROWS, []], default=[], metavar="ROW", help=", ".join(ROWS))
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the values to a file")
     given = parser.parse_args()
-    found: list[Time] = []
+    times: list[Time] = []
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
         for name in given.rows or ROWS:
             with tempfile.TemporaryDirectory() as folder:
-                found += ROWS[name](browser, Path(folder) / "files")
+                times += ROWS[name](browser, Path(folder) / "files")
                 print(f"measured {name}", file=sys.stderr, flush=True)
         browser.close()
     print("| what | value | limit | how |\n| --- | --- | --- | --- |")
-    for one in found:
+    for one in times:
         print(f"| {' | '.join(one.cells())} |")
     if given.json is not None:
-        rows = {"load": os.getloadavg()[0], "rows": [dataclasses.asdict(one) for one in found]}
+        rows = {"load": os.getloadavg()[0], "rows": [dataclasses.asdict(one) for one in times]}
         given.json.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
-    return int(any(one.limit is not None and one.value > one.limit for one in found))
+    return int(any(one.limit is not None and one.value > one.limit for one in times))
 
 
 if __name__ == "__main__":

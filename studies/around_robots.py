@@ -169,13 +169,13 @@ def person_numbers(position: Floats, active: NDArray[np.bool_]) -> Floats:
 
 def simulated(trial: Trial, model: CrowdModel, seeds: Sequence[int]) -> list[Floats]:
     """Return the numbers of the people in each run of a recording with a crowd model."""
-    found = []
+    result = []
     for episode in simulate_seeds(dataclasses.replace(trial, crowd=model), seeds):
         every = max(1, round(0.1 / float(episode.times[1] - episode.times[0])))
         robot = episode.robots[0]
         order = [robot, *(k for k in range(episode.position.shape[1]) if k != robot)]
-        found.append(person_numbers(episode.position[::every, order], episode.active[::every, order]))
-    return found
+        result.append(person_numbers(episode.position[::every, order], episode.active[::every, order]))
+    return result
 
 
 def distance_to_reality(real: Floats, runs: Sequence[Floats]) -> float:
@@ -202,8 +202,10 @@ def measure_sets(file: Path, recordings: Sequence[Any], trials: Sequence[Trial])
     """Return error and least clearance in every recording of every set; those in the file are not measured again."""
     rows = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] if file.is_file() else []
     known = [row["set"] for row in rows]
-    reality = [person_numbers(one.agents.position, one.agents.active) for _, one in recordings]
-    for values in track([one for one in parameter_sets() if one not in known], "sets", disable=not sys.stderr.isatty()):
+    reality = [person_numbers(item.agents.position, item.agents.active) for _, item in recordings]
+    for values in track(
+        [set_ for set_ in parameter_sets() if set_ not in known], "sets", disable=not sys.stderr.isatty()
+    ):
         runs = [simulated(trial, _people(values), range(SET_SEEDS)) for trial in trials]
         errors = [distance_to_reality(real, own) for real, own in zip(reality, runs, strict=True)]
         least = [float(np.median([run[:, 0].min() for run in own])) for own in runs]
@@ -236,7 +238,7 @@ def measure_clearances(
     recordings: Sequence[Any], trials: Sequence[Trial], models: Mapping[str, CrowdModel]
 ) -> ClearanceTable:
     """Return the least clearances in CITR: of recorded people, and of the median run of each recording by model."""
-    real = [float(person_numbers(one.agents.position, one.agents.active)[:, 0].min()) for _, one in recordings]
+    real = [float(person_numbers(item.agents.position, item.agents.active)[:, 0].min()) for _, item in recordings]
     rows = []
     for name, model in models.items():
         least = [
@@ -269,7 +271,7 @@ def held_back_table(rows: Sequence[Mapping[str, Any]], recordings: Sequence[Any]
     """Return the table of choices that leave one kind of encounters out, and of leaving single recordings out."""
     least, total = np.array([row["least"] for row in rows]), set_costs(rows)
     errors = np.array([row["errors"] for row in rows])
-    real = np.array([person_numbers(one.agents.position, one.agents.active)[:, 0].min() for _, one in recordings])
+    real = np.array([person_numbers(item.agents.position, item.agents.active)[:, 0].min() for _, item in recordings])
     kinds = np.array([kind for kind, _ in recordings])
     lines = [
         "| held back | recordings | recorded [m] | simulated [m] | touched | error | least possible error | set |",
@@ -299,12 +301,12 @@ def back_table(
     values: Mapping[str, float], recordings: Sequence[tuple[str, RobotRecording]], trials: Sequence[Trial]
 ) -> list[str]:
     """Return the table of changes of a set, measured on the recordings of a cart from behind only."""
-    chosen = [(one, trial) for (kind, one), trial in zip(recordings, trials, strict=True) if kind == "back"]
-    real = [person_numbers(one.agents.position, one.agents.active) for one, _ in chosen]
+    chosen = [(item, trial) for (kind, item), trial in zip(recordings, trials, strict=True) if kind == "back"]
+    real = [person_numbers(item.agents.position, item.agents.active) for item, _ in chosen]
     lines = [
         f"| change | least clearance [m] | touched, of {len(real)} | runs touched | error |",
         "|---|---|---|---|---|",
-        f"| recorded people | {np.median([one[:, 0].min() for one in real]):.2f} | 0 | - | - |",
+        f"| recorded people | {np.median([item[:, 0].min() for item in real]):.2f} | 0 | - | - |",
     ]
     for change in BACK_WAYS:
         runs = [simulated(trial, _people({**values, **change}), range(SEEDS)) for _, trial in chosen]
@@ -327,7 +329,7 @@ def page(models: Sequence[str], data: Path, sets: Path, folder: Path) -> tuple[s
     """Return the page, and the least clearances on it."""
     warnings.simplefilter("ignore")
     recordings = load_recordings(data)
-    trials = [recorded_trial(one, folder / str(k)) for k, (_, one) in enumerate(recordings)]
+    trials = [recorded_trial(item, folder / str(k)) for k, (_, item) in enumerate(recordings)]
     rows = measure_sets(sets, recordings, trials)
     table = measure_clearances(recordings, trials, compared_models())
     others = np.array([kind != "back" for kind, _ in recordings])

@@ -45,12 +45,12 @@ def outcome(name: str, way: float, lean: float = 0.0, speed: float = 0.0) -> int
 
 def largest(most: int, values: np.ndarray, count: Callable[[float], int]) -> float:
     """Return the largest value up to which at most ``most`` steps suffice."""
-    found = 0.0
+    result = 0.0
     for value in values.tolist():
         if count(value) > most:
             break
-        found = value
-    return found
+        result = value
+    return result
 
 
 def leans() -> None:
@@ -165,13 +165,13 @@ def falls() -> None:
         for _ in push(world, speed):
             pass
         steps = int(world.falling.balance.steps[1]) if world.falling else 0
-        for one in world.falls or [None]:
-            if one is None:
+        for fall in world.falls or [None]:
+            if fall is None:
                 print(f"{word:10} {speed:4.1f}   {name:9} {steps:3}    no fall", flush=True)
             else:
                 print(
-                    f"{one.direction:10} {speed:4.1f}   {name:9} {one.steps:3}    {one.end - one.begin:6.2f}   "
-                    f"{one.hand:5.2f}  {one.pelvis:5.2f}  {one.head:5.2f}       {one.hic15:5.0f}  {one.cause}",
+                    f"{fall.direction:10} {speed:4.1f}   {name:9} {fall.steps:3}    {fall.end - fall.begin:6.2f}   "
+                    f"{fall.hand:5.2f}  {fall.pelvis:5.2f}  {fall.head:5.2f}       {fall.hic15:5.0f}  {fall.cause}",
                     flush=True,
                 )
 
@@ -188,7 +188,7 @@ def row() -> None:
         moved = np.flatnonzero(~np.isnan(first[1:]))
         rate = 0.45 * (len(moved) - 1) / (first[1 + moved[-1]] - first[1]) if len(moved) > 1 else math.nan
         print(f"beam at {speed} m/s: farthest {farthest[1:].round(2).tolist()} m, speed of the push {rate:.2f} m/s, "
-              f"falls {[(one.person, one.direction, one.cause) for one in world.falls]}", flush=True)  # fmt: skip
+              f"falls {[(fall.person, fall.direction, fall.cause) for fall in world.falls]}", flush=True)  # fmt: skip
 
 
 FILMS = {
@@ -229,7 +229,10 @@ def films(folder: Path, kinds: Sequence[str] = (), name: str = "woman-72") -> No
         stacked.save(folder / f"{kind}.png")
         steps = int(world.falling.balance.steps[0]) if world.falling else 0
         print(
-            kind, steps, [(one.direction, round(one.pelvis, 2), round(one.head, 2)) for one in world.falls], flush=True
+            kind,
+            steps,
+            [(fall.direction, round(fall.pelvis, 2), round(fall.head, 2)) for fall in world.falls],
+            flush=True,
         )
 
 

@@ -294,10 +294,10 @@ def main(words: Sequence[str] | None = None) -> int:
     options = parser.parse_args(words)
     try:
         with progress() as report:
-            found = measure_drives(
+            drives = measure_drives(
                 options.robot or None, quick=options.quick, makers=options.makers, keep=options.keep, report=report
             )
-        write_drives_page(found, options.page, _command(options))
+        write_drives_page(drives, options.page, _command(options))
     except CrowdbotError as error:
         parser.error(str(error))
     return 0

@@ -75,8 +75,8 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         sizes = EngineSizes.quick(options.repeats) if options.quick else EngineSizes(options.repeats)
         with progress() as report:
-            found = measure_engines(sizes, options.rvo2, report)
-        write_engines_page(found, options.page, " ".join(command))
+            engines = measure_engines(sizes, options.rvo2, report)
+        write_engines_page(engines, options.page, " ".join(command))
     except CrowdbotError as error:
         parser.error(str(error))
     return 0

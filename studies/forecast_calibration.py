@@ -48,10 +48,10 @@ def main() -> None:
     print("|---" * (len(asked) + 2) + "|")
     for name in options.only:
         tracks = read(options.data, RECORDINGS[name]) if name in RECORDINGS else trial_tracks(name)
-        short = [one.name for one in tracks if np.unique(one.frame).size < ROWS]
+        short = [track.name for track in tracks if np.unique(track.frame).size < ROWS]
         if short:
             print(f"{name}: shorter than {ROWS} rows, not scored: {', '.join(short)}", file=sys.stderr)
-        cut = thinned([one for one in tracks if one.name not in short], options.windows)
+        cut = thinned([track for track in tracks if track.name not in short], options.windows)
         persons = sum(int(future.scored.sum()) for _, future in cut)
         cells = []
         for predictor in asked.values():

@@ -62,7 +62,7 @@ def main() -> None:
             )
             overlaps = [overlap(window, box) for window in windows]
             hit = max(overlaps, default=0.0) >= OVERLAP
-            false += sum(one < 0.2 for one in overlaps)
+            false += sum(item < 0.2 for item in overlaps)
             images += 1
             for word in ("all", *words):
                 found.setdefault(word, []).append(hit)
@@ -110,7 +110,7 @@ def overlap(window: Sequence[int], box: Sequence[int]) -> float:
     a, b = standard(window, MARGIN), standard(box, 1.0)
     left, top, right, low = max(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])
     both = max(0.0, right - left) * max(0.0, low - top)
-    sizes = [(one[2] - one[0]) * (one[3] - one[1]) for one in (a, b)]
+    sizes = [(item[2] - item[0]) * (item[3] - item[1]) for item in (a, b)]
     return both / (sum(sizes) - both)
 
 

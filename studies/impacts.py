@@ -125,7 +125,7 @@ def meetings(rows: list[Meeting]) -> None:
     for row in rows:
         world, events, closing = row.meet()
         robot = next(iter(world.robot_bodies.values()))
-        event = max(events, key=lambda one: one.peak_force)
+        event = max(events, key=lambda event: event.peak_force)
         formula = two_body_force(closing, robot.mass, event.region, float(world.people.people.mass[0]))
         how = "mirrored" if row.mirrored else "driven"
         who = f"person {row.person}" + (f" at {row.walking:g}" if row.walking else "")

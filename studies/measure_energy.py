@@ -136,10 +136,10 @@ def read_streets(folder: Path) -> tuple[Trajectories, ...]:
     Raises:
         DataError: the folder contains none of them.
     """
-    found = tuple(load(folder / name).resample(STEP) for name in STREETS if (folder / name).is_file())
-    if not found:
+    trajectories = tuple(load(folder / name).resample(STEP) for name in STREETS if (folder / name).is_file())
+    if not trajectories:
         raise DataError(f"{folder} contains none of the recordings, such as {STREETS[0]}")
-    return found
+    return trajectories
 
 
 def find_companions(tracks: Trajectories) -> frozenset[Pair]:
@@ -196,7 +196,7 @@ def walk_again(tracks: Trajectories, model: CrowdModel, seed: int = 0) -> Trajec
         if not np.any(here) and row > enter.max():
             break
     number = np.repeat(np.arange(len(rows)), [len(who) for who, _ in rows])
-    who, where = np.concatenate([one for one, _ in rows]), np.concatenate([one for _, one in rows])
+    who, where = np.concatenate([item for item, _ in rows]), np.concatenate([item for _, item in rows])
     return Trajectories(ids[who], number, where[:, 0], where[:, 1], row_rate=1.0 / STEP, frame_step=1, name=tracks.name)
 
 
@@ -221,14 +221,14 @@ def count_energy(tracks: Trajectories, radius: float, companions: frozenset[Pair
 
 def fit_energy(counts: tuple[EnergyCounts, ...]) -> EnergyFit:
     """Return the energy over the parts of all recordings together, with 95 % intervals by the bootstrap over parts."""
-    found = np.concatenate([one.found for one in counts])
-    free = np.concatenate([one.free for one in counts])
+    found = np.concatenate([count.found for count in counts])
+    free = np.concatenate([count.free for count in counts])
     tau: Floats = np.asarray(BIN * (np.arange(found.shape[1]) + 0.5), dtype=np.float64)
     drawn = stream(0, "energy law", "bootstrap").integers(0, len(found), (RESAMPLES, len(found)))
     energy, *exponents = _fit(tau, found.sum(axis=0), free.sum(axis=0))
-    draws = [_fit(tau, found[one].sum(axis=0), free[one].sum(axis=0)) for one in drawn]
-    low, high = _ends(np.stack([one[0] for one in draws]))
-    ends = [_ends(np.array([one[k] for one in draws])[:, None]) for k in (1, 2)]
+    draws = [_fit(tau, found[item].sum(axis=0), free[item].sum(axis=0)) for item in drawn]
+    low, high = _ends(np.stack([draw[0] for draw in draws]))
+    ends = [_ends(np.array([draw[k] for draw in draws])[:, None]) for k in (1, 2)]
     return EnergyFit(
         tau, energy, low, high, found.sum(axis=0),
         exponents[0], float(ends[0][0][0]), float(ends[0][1][0]),
@@ -265,13 +265,13 @@ def main() -> int:
     parser.add_argument("--out", type=Path, required=True, help="page")
     options = parser.parse_args()
     streets = read_streets(options.data)
-    companions = [find_companions(one) for one in streets]
+    companions = [find_companions(street) for street in streets]
     found: dict[str, list[EnergyFit]] = {}
     for name, model in {"recordings": None, **MODELS}.items():
         print(name, file=sys.stderr, flush=True)
-        tracks = streets if model is None else [walk_again(one, model) for one in streets]
+        tracks = streets if model is None else [walk_again(street, model) for street in streets]
         found[name] = [
-            fit_energy(tuple(count_energy(one, radius, own) for one, own in zip(tracks, companions, strict=True)))
+            fit_energy(tuple(count_energy(track, radius, own) for track, own in zip(tracks, companions, strict=True)))
             for radius in RADII
         ]
     text = PAGE.format(
@@ -287,8 +287,8 @@ def main() -> int:
 
 
 def _row(name: str, fits: list[EnergyFit]) -> str:
-    cells = [_cell(one.exponent, one.exponent_low, one.exponent_high) for one in fits]
-    cells += [_cell(one.free, one.free_low, one.free_high) for one in fits]
+    cells = [_cell(fit.exponent, fit.exponent_low, fit.exponent_high) for fit in fits]
+    cells += [_cell(fit.free, fit.free_low, fit.free_high) for fit in fits]
     return f"| {name} | {' | '.join(cells)} |"
 
 
@@ -302,14 +302,14 @@ def _verdict(found: dict[str, list[EnergyFit]]) -> str:
     """Say whose interval has the 2 of the paper, and whose meets that of the recordings, at each radius."""
     lines = []
     for name, fits in found.items():
-        two = [f"{radius} m" for radius, one in zip(RADII, fits, strict=True)
-               if one.exponent_low <= 2.0 <= one.exponent_high]  # fmt: skip
+        two = [f"{radius} m" for radius, fit in zip(RADII, fits, strict=True)
+               if fit.exponent_low <= 2.0 <= fit.exponent_high]  # fmt: skip
         words = f"the interval of n has 2 at {', '.join(two)}" if two else "no interval of n has 2"
         if name != "recordings":
             same = [
                 f"{radius} m"
-                for radius, one, real in zip(RADII, fits, found["recordings"], strict=True)
-                if one.exponent_low <= real.exponent_high and real.exponent_low <= one.exponent_high
+                for radius, fit, real in zip(RADII, fits, found["recordings"], strict=True)
+                if fit.exponent_low <= real.exponent_high and real.exponent_low <= fit.exponent_high
             ]
             words += f"; it meets that of the recordings at {', '.join(same)}" if same else \
                 "; it meets that of the recordings at no radius"  # fmt: skip

@@ -250,7 +250,7 @@ def _engine_row(line: str) -> list[str] | None:
     known = next(((model, engine) for part, model, engine in ENGINE_OF if re.search(part, line)), None)
     if share is None or middle is None or known is None:
         return None
-    count = share[2] or (found[1] if (found := re.search(r"(\d+) (?:steps|agents)", line)) else "")
+    count = share[2] or (match[1] if (match := re.search(r"(\d+) (?:steps|agents)", line)) else "")
     scene = re.split(r": |, (?:all|moving|free)", line)[0]
     for word in ("crossing", "corridor", "bottleneck", "random states"):
         scene = word if word in scene else scene

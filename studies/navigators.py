@@ -171,7 +171,9 @@ def compute(rows: list[Row], options: argparse.Namespace) -> dict[Row, CellResul
 def line(row: Row, found: CellResult, columns: tuple[str, ...]) -> str:
     """Return a row of a table."""
     values = [_estimate(found, column) for column in columns]
-    texts = ["-" if math.isnan(one.value) else f"{one.value:.3g} [{one.low:.3g}, {one.high:.3g}]" for one in values]
+    texts = [
+        "-" if math.isnan(value.value) else f"{value.value:.3g} [{value.low:.3g}, {value.high:.3g}]" for value in values
+    ]
     return f"| `{row.trial}` | {row.title} | {len(found.values('success'))} | {' | '.join(texts)} |"
 
 
@@ -187,7 +189,7 @@ def _estimate(found: CellResult, column: str) -> Estimate:
 def lines_of_page(page: str) -> Lines:
     """Return the rows that a page has; the tables of its text have fewer columns."""
     found, table = Lines(), ""
-    bars = {one.name: one.head.count("|") for one in TABLES}
+    bars = {item.name: item.head.count("|") for item in TABLES}
     for text in page.splitlines():
         if text.startswith("#"):
             table = SECTIONS.get(text, "")

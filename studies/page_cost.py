@@ -71,7 +71,7 @@ def states(people: int, beams: int, count: int) -> dict[str, Any]:
         bodies.follow(simulation)
         frames.append(scene_frame(simulation, ["scans"], bodies.motion).encode())
     description = scene_description(simulation, bodies.motion)
-    names = [f"bodies/{level}.bin" for level in range(3)] + [one["mesh"] for one in description["robots"]]
+    names = [f"bodies/{level}.bin" for level in range(3)] + [item["mesh"] for item in description["robots"]]
     files = {name: scene_resource(simulation, name, {}).data for name in names}
     return {
         "description": description,

@@ -90,7 +90,7 @@ class PredictionTable:
         rng = stream(0, "predictions", "bootstrap")
         mean, drawn = np.zeros(len(self.names)), np.zeros((len(self.names), RESAMPLES))
         kinds = [[k for k, e in enumerate(self.experiments) if e.kind == kind] for kind in KINDS]
-        kinds = [one for one in kinds if one]
+        kinds = [kind for kind in kinds if kind]
         for part in kinds:
             mean += share[:, part].mean(axis=1) / len(kinds)
             numbers = rng.integers(0, len(part), (RESAMPLES, len(part)))
@@ -133,11 +133,11 @@ def compare_predictions(
     for k, model in enumerate(models.values()):
         report(list(models)[k])
         for e, experiment in enumerate(experiments):
-            found = measure_tracks(model, [{}], experiment)
-            distance = ttc_distance(found.ttc, found.ttc_real)[0]
-            errors[k, e] = found.early.mean(), found.mean.mean(), distance
+            tracks = measure_tracks(model, [{}], experiment)
+            distance = ttc_distance(tracks.ttc, tracks.ttc_real)[0]
+            errors[k, e] = tracks.early.mean(), tracks.mean.mean(), distance
             if k == 0:
-                people.append(found.early.shape[1])
+                people.append(tracks.early.shape[1])
     for e, experiment in enumerate(experiments):
         errors[-1, e, :2] = keep_velocity(experiment)
     return PredictionTable((*models, CONSTANT), tuple(experiments), errors, tuple(people))

@@ -53,17 +53,17 @@ def spread(rows: list[Row], names: tuple[str, str] = PAIR) -> str:
     """Return mean and standard deviation over seeds of two errors."""
     values = np.array([[row[name] for name in names] for row in rows])
     deviation = values.std(axis=0, ddof=1) if len(values) > 1 else np.zeros(2)
-    cells = (f"{one:.3f} ± {two:.3f}" for one, two in zip(values.mean(axis=0), deviation, strict=True))
+    cells = (f"{item:.3f} ± {two:.3f}" for item, two in zip(values.mean(axis=0), deviation, strict=True))
     return f"{' / '.join(cells)} ({len(rows)})"
 
 
 def by_place(rows: Rows) -> dict[str, Rows]:
     """Return results by the first word of their names."""
-    found: dict[str, Rows] = {}
+    result: dict[str, Rows] = {}
     for name, row in rows.items():
         place, _, rest = name.partition("|")
-        found.setdefault(place, {})[rest] = row
-    return found
+        result.setdefault(place, {})[rest] = row
+    return result
 
 
 def zero_shot(rows: Rows) -> str:

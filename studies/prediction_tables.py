@@ -91,23 +91,23 @@ def scores(forecast: Forecast, past: Windows, future: Windows, deep: bool) -> di
     """Return the scores of every scored person."""
     who = future.scored
     errors = ade(forecast, future), fde(forecast, future)
-    found = {}
+    result = {}
     for rule, names in (("person", ("ADE", "FDE")), ("scene", ("JADE", "JFDE")), ("same", ("", "FDE of the same"))):
         for name, values in zip(names, best_of(*errors, rule), strict=True):
             if name:
-                found[name] = values[who]
-    found["missed"] = np.where(found["FDE"] > 2.0, 1.0, 0.0)
+                result[name] = values[who]
+    result["missed"] = np.where(result["FDE"] > 2.0, 1.0, 0.0)
     together = neighbor_mask(future)
     if together.any():
         hit = np.einsum("wk,wka->wa", forecast.weight, collision_mask(forecast, future))
-        found["collisions"] = hit[together]
+        result["collisions"] = hit[together]
         for limit in (0.2, 0.4):
             own, true = swept_collision_shares(forecast, past, future, limit)
-            found[f"swept {limit}"] = np.full(int(together.sum()), own)
-            found[f"truth {limit}"] = np.full(int(together.sum()), true)
+            result[f"swept {limit}"] = np.full(int(together.sum()), own)
+            result[f"truth {limit}"] = np.full(int(together.sum()), true)
     if deep and forecast.samples > 1:
-        found["energy"], found["NLL"] = energy_score(forecast, future)[who], kde_nll(forecast, future)[who]
-    return found
+        result["energy"], result["NLL"] = energy_score(forecast, future)[who], kde_nll(forecast, future)[who]
+    return result
 
 
 def tracks_of(options: argparse.Namespace, fold: str) -> list[Trajectories]:
@@ -117,11 +117,11 @@ def tracks_of(options: argparse.Namespace, fold: str) -> list[Trajectories]:
 
 def nets(options: argparse.Namespace, fold: str) -> dict[str, AnchorNet]:
     """Return the nets of a fold by seed."""
-    found = {"0": AnchorNet(fold)}
+    result = {"0": AnchorNet(fold)}
     if options.weights is not None:
         for path in sorted(options.weights.glob(f"anchor-net-{fold}-seed*.npz")):
-            found[path.stem.partition("-seed")[2]] = AnchorNet(file=str(path))
-    return found
+            result[path.stem.partition("-seed")[2]] = AnchorNet(file=str(path))
+    return result
 
 
 def leave_one_out(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Row]]]:
@@ -161,7 +161,7 @@ def zero_shot(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], R
     for place, patterns in places.RECORDINGS.items():
 
         def cut(patterns: tuple[str, ...] = patterns) -> list[tuple[Windows, Windows]]:
-            found = [one for one in places.read(options.data, patterns) if np.unique(one.frame).size >= places.ROWS]
+            found = [item for item in places.read(options.data, patterns) if np.unique(item.frame).size >= places.ROWS]
             return places.thinned(found, options.windows)
 
         asked: dict[str, tuple[Predictor, int]] = {
@@ -202,15 +202,15 @@ def trajnet_row(options: argparse.Namespace, file: str, predictor: Predictor, sa
         collision_mask(first, future, 0.2, "true", 2),
     ]
     one, two = (hit[:, 0][future.scored] for hit in hits)
-    found = {}
+    result = {}
     for name in ("all", *TRAJNET_CATEGORIES):
         rows = np.arange(len(kept)) if name == "all" else scenes_of_category(kept, name)
         if len(rows):
-            found[name] = {
+            result[name] = {
                 "scenes": len(rows), "ADE": mean[rows].mean(), "FDE": last[rows].mean(), "Col-I": one[rows].mean(),
                 "Col-II": two[rows].mean(),
             }  # fmt: skip
-    return found
+    return result
 
 
 def degraded(options: argparse.Namespace) -> Iterator[tuple[str, Callable[[], Row]]]:

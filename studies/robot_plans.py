@@ -124,10 +124,10 @@ def person_errors(
     window, person = np.nonzero(future.scored & (close if near else ~close))
     seen = dataclasses.replace(past, plan=past.plan if plan else None, radius=past.radius if radii else None)
     error = np.linalg.norm(predictor.predict(seen, rows).position[:, 0] - future.position, axis=-1).mean(axis=1)
-    found: dict[tuple[str, int], list[float]] = {}
+    result: dict[tuple[str, int], list[float]] = {}
     for w, a in zip(window, person, strict=True):
-        found.setdefault((name, int(past.id[w, a])), []).append(float(error[w, a]))
-    return found
+        result.setdefault((name, int(past.id[w, a])), []).append(float(error[w, a]))
+    return result
 
 
 def paired_rows(cases: Iterable[Case], predictor: Predictor) -> Row:

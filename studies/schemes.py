@@ -74,18 +74,20 @@ def _report(shared: Path, folder: Path) -> str:
     results = _run(PredictorEvaluation(recordings, tuple(specs)), folder, "report")
     lines = ["![ADE of every scheme and baseline](calibrated-crowds/report.png)\n"]
     for recording in recordings:
-        own = [one for one in results if one.recording is recording]
+        own = [result for result in results if result.recording is recording]
         lines += [f"### {recording.name}\n", *_summary(own)]
     return "\n".join(lines)
 
 
 def _summary(results: Sequence[PredictorResult]) -> list[str]:
     """Say which scheme beats the best baseline, and give the table model x cost with the best search of each goal."""
-    base = min((one for one in results if not one.frames.calibrated), key=lambda one: one.score.ade)
-    real = [one for one in results if one.frames.calibrated and one.spec.goal != "ground-truth"]
+    base = min((result for result in results if not result.frames.calibrated), key=lambda result: result.score.ade)
+    real = [result for result in results if result.frames.calibrated and result.spec.goal != "ground-truth"]
     best = min(real, key=lambda one: one.score.ade)
-    beaten = [one for one in real if one.score.ade < base.score.ade]
-    oracle = min((one for one in results if one.spec.goal == "ground-truth"), key=lambda one: one.score.ade)
+    beaten = [item for item in real if item.score.ade < base.score.ade]
+    oracle = min(
+        (result for result in results if result.spec.goal == "ground-truth"), key=lambda result: result.score.ade
+    )
     away, (low, high) = best.score.difference(base.score)
     lines = [
         f"{base.score.persons} persons in {base.score.windows} windows. The best baseline is {base.label}"
@@ -95,7 +97,7 @@ def _summary(results: Sequence[PredictorResult]) -> list[str]:
         "| model | cost | " + " | ".join(f"{search}, {goal}" for goal in GOALS for search in SEARCHES) + " |",
         "|---|---" + "|---" * 6 + "|",
     ]
-    found = {one.label: one.score.ade for one in results}
+    found = {result.label: result.score.ade for result in results}
     for model, cost in itertools.product(MODELS, COSTS):
         cells = [f"{found[f'{model}, {cost}, {search}, {goal}']:.3f}" for goal in GOALS for search in SEARCHES]
         lines.append(f"| {model} | {cost} | " + " | ".join(cells) + " |")
@@ -135,7 +137,7 @@ def _learned(shared: Path, folder: Path) -> str:
     def scheme(model: str = "orca") -> Simulated:
         return Simulated(model, CurrentDirection(), "progressive", "genetic", BUDGET, contact=0.0)
 
-    made: dict[str, PredictorSpec] = {f"cv, mean of {one.displacements}": PredictorSpec(one) for one in VARIANTS}
+    made: dict[str, PredictorSpec] = {f"cv, mean of {item.displacements}": PredictorSpec(item) for item in VARIANTS}
     made |= {
         "Kalman": PredictorSpec(Kalman()),
         "ORCA, current direction, as given": PredictorSpec(Simulated("orca", contact=0.0)),
@@ -149,7 +151,7 @@ def _learned(shared: Path, folder: Path) -> str:
         "PowerLaw, learned, shared": PredictorSpec(scheme("power-law"), "learned-destinations", shared=True),
     }
     results = _run(PredictorEvaluation(recordings, tuple(made.values())), folder, "learned")
-    found = {(one.recording.path, one.spec.name): one for one in results}
+    found = {(result.recording.path, result.spec.name): result for result in results}
     lines = [LEARNED.format(budget=BUDGET), "| | " + " | ".join(PLACES) + " |", "|---" * (len(PLACES) + 1) + "|"]
     for label, spec in made.items():
         cells = [_cell(found[recording.path, spec.name]) for recording in recordings]
@@ -169,7 +171,7 @@ def _verdicts(
         "| scheme | better than the best constant velocity | fewer collisions than constant velocity |",
         "|---|---|---|",
     ]
-    variants = [made[f"cv, mean of {one.displacements}"].name for one in VARIANTS]
+    variants = [made[f"cv, mean of {item.displacements}"].name for item in VARIANTS]
     for label, spec in made.items():
         if not isinstance(spec.predictor, Simulated):
             continue

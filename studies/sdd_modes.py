@@ -85,12 +85,12 @@ def ways(past: np.ndarray, seen: np.ndarray, went: np.ndarray) -> np.ndarray:
         seen, went: ``[M, T, 2]`` tracks of others and how they went on.
     """
     found, heading = [], seen[:, -1] - seen[:, -4]
-    for one in past:
-        own = one[-1] - one[-4]
+    for item in past:
+        own = item[-1] - item[-4]
         ratio = np.linalg.norm(heading, axis=1) / max(float(np.linalg.norm(own)), 1e-9)
         angle = np.abs(np.angle((heading @ [1, 1j]) * np.conj(own @ [1, 1j])))
         like = (
-            (np.linalg.norm(seen[:, -1] - one[-1], axis=1) < 2.0)
+            (np.linalg.norm(seen[:, -1] - item[-1], axis=1) < 2.0)
             & (angle < np.pi / 6)
             & (abs(np.log(ratio + 1e-9)) < 0.35)
         )
@@ -134,7 +134,7 @@ def main() -> None:
         chosen = some[np.linspace(0, len(some) - 1, SHOWN).round().astype(int)]
         for row, method in enumerate(options.method):
             paths = drawn(options, place, method, learned, asked)
-            count = np.array([modes(one) for one in paths])
+            count = np.array([modes(path) for path in paths])
             error = np.linalg.norm(paths[:, :20] - truth[:, None], axis=-1)
             best = error.mean(axis=2).min(axis=1).mean(), error[:, :, -1].min(axis=1).mean()
             spread = paths[:, :, -1].std(axis=1).mean()

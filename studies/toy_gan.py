@@ -293,7 +293,7 @@ class GanComparison:
     @staticmethod
     def rows(runs: Sequence[GanRun]) -> list[dict[str, Any]]:
         """Return one row per method: means over the last quarter of the measurements of each seed, and their sd."""
-        found = []
+        result = []
         for method in dict.fromkeys(run.method for run in runs):
             own = [run for run in runs if run.method == method]
             row: dict[str, Any] = {"method": method, "seeds": len(own), "updates": int(own[0].update[-1])}
@@ -301,8 +301,8 @@ class GanComparison:
             for name in MEASURES:
                 ends = [float(run.measures[name][-last:].mean()) for run in own]
                 row[name], row[f"{name}_sd"] = float(np.mean(ends)), float(np.std(ends))
-            found.append(row)
-        return found
+            result.append(row)
+        return result
 
 
 def _train_run(job: tuple[GanComparison, str, int, Path | None]) -> GanRun:

@@ -53,13 +53,13 @@ def real_encounters(data: Path) -> Pairs:
 
 def citr_encounters(data: Path) -> Pairs:
     """Return the encounters with the golf cart of CITR by run, with its plan."""
-    found = {}
+    pairs = {}
     for people, cart in citr_runs(data):
         try:
-            found[people.stem] = cart_windows(people, cart)
+            pairs[people.stem] = cart_windows(people, cart)
         except InputError:  # the run is too short
             continue
-    return found
+    return pairs
 
 
 def samples_of(pairs: Pairs, room: float, net: bool) -> dict[str, ReactionSamples]:
@@ -70,16 +70,16 @@ def samples_of(pairs: Pairs, room: float, net: bool) -> dict[str, ReactionSample
 
 def shipped_fit(simulated: Sequence[ReactionSamples], real: Sequence[ReactionSamples], room: float) -> PlanReaction:
     """Return the coefficients from simulated and real encounters."""
-    return fit_reaction([*simulated, *(one for one in real for _ in range(REAL))], room)
+    return fit_reaction([*simulated, *(item for item in real for _ in range(REAL))], room)
 
 
 def errors(samples: Sequence[ReactionSamples], reaction: PlanReaction) -> np.ndarray:
     """Return sums of the errors without and with reaction over rows [m], and the number of rows."""
     found = np.zeros(3)
-    for one in samples:
-        moved = one.displacements(reaction)
-        known = ~np.isnan(one.missed[..., 0])
-        found += [np.linalg.norm(rest[known], axis=1).sum() for rest in (one.missed, one.missed - moved)] + [
+    for sample in samples:
+        moved = sample.displacements(reaction)
+        known = ~np.isnan(sample.missed[..., 0])
+        found += [np.linalg.norm(rest[known], axis=1).sum() for rest in (sample.missed, sample.missed - moved)] + [
             known.sum()
         ]
     return found
@@ -115,12 +115,12 @@ def score(options: argparse.Namespace) -> None:
         shipped = shipped_fit([*seen.values()], [*people.values()], room)
         left_out = np.zeros(3)
         for name, own in people.items():
-            rest = [one for other_name, one in people.items() if other_name[:8] != name[:8]]
+            rest = [person for other_name, person in people.items() if other_name[:8] != name[:8]]
             left_out += errors([own], shipped_fit([*seen.values()], rest, room))
         runs = np.zeros(3)
         for name, own in cart.items():
             if len(own.missed):
-                runs += errors([own], fit_reaction([one for n, one in cart.items() if n != name], room))
+                runs += errors([own], fit_reaction([item for n, item in cart.items() if n != name], room))
         cells = (errors([*unseen.values()], shipped), left_out, errors([*cart.values()], shipped), runs)
         print(f"| {room} | " + " | ".join(_cell(cell) for cell in cells) + " |", flush=True)
 

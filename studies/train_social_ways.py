@@ -40,7 +40,9 @@ ALONE = "20 draws without contact"
 
 def samples_of(recordings: list[Trajectories], protocol: str = "all") -> Samples:
     """Return all windows of some recordings."""
-    return Samples.concatenate([Samples.from_windows(*one.windows(protocol=protocol), one.name) for one in recordings])
+    return Samples.concatenate(
+        [Samples.from_windows(*recording.windows(protocol=protocol), recording.name) for recording in recordings]
+    )
 
 
 def texts(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
@@ -92,7 +94,7 @@ def scored(options: argparse.Namespace, folder: Path, recordings: list[Trajector
     predictor = SocialWays(checkpoint=str(folder / BEST))
     alone = dataclasses.replace(predictor, contact=0.0)
     rows = {}
-    cut = [one.windows(protocol=protocol) for one in recordings]
+    cut = [recording.windows(protocol=protocol) for recording in recordings]
     for name, count, chosen in (("20 draws", 20, predictor), ("one draw", 1, predictor), (ALONE, 20, alone)):
         parts = [score_predictor(chosen, past[:: options.every], future[:: options.every], count, seed=seed)
                  for past, future in cut]  # fmt: skip

@@ -46,14 +46,14 @@ def simulated_crowds(scenes: int = 6, seed: int = 0) -> list[Trajectories]:
 
     People walk at their preferred speed, normal(1.3, 0.25) m/s, in the direction of the layout, around each other.
     """
-    found = []
+    trajectories = []
     for model in CROWD_MODELS:
         predictor = Simulated(model, substep=0.05, contact=0.0)
         for layout in CROWD_LAYOUTS:
             rng = stream(seed, "crowds", model, layout)
             crowds = [_rows(predictor, layout, rng) for _ in range(scenes)]
-            found.append(_recording(crowds, f"simulated-{model}-{layout}"))
-    return found
+            trajectories.append(_recording(crowds, f"simulated-{model}-{layout}"))
+    return trajectories
 
 
 def _rows(predictor: Simulated, layout: str, rng: np.random.Generator) -> Floats:
@@ -127,12 +127,12 @@ def robot_encounters(scenes: int = 40, seed: int = 0) -> dict[str, tuple[Windows
     straight, bends, or brakes to a stop. Undisturbed, they would be at most 2.5 m apart at a time between the fourth
     observed row and the end of the future.
     """
-    found = {}
+    result = {}
     for model in REACTING_MODELS:
         for kind, angle in ENCOUNTERS.items():
             rng = stream(seed, "encounters", model, kind)
-            found[f"{model} {kind}"] = _simulate(model, _starts(scenes, angle, rng), f"{model}-{kind}")
-    return found
+            result[f"{model} {kind}"] = _simulate(model, _starts(scenes, angle, rng), f"{model}-{kind}")
+    return result
 
 
 def people_encounters(tracks: Trajectories, every: int = 6) -> tuple[Windows, Windows]:

@@ -173,7 +173,7 @@ def mean_and_range(values: Sequence[float]) -> str:
 
 def one_way_row(density: float, runs: Runs = PAGE) -> str:
     """Return the row of a one-way corridor."""
-    speeds = [forward_speed(one) for one in runs.of(load_trial("one-way-with", density=density, width=4.0))]
+    speeds = [forward_speed(item) for item in runs.of(load_trial("one-way-with", density=density, width=4.0))]
     wanted = float(weidmann_speed(density))
     return f"| {density:g} | {mean_and_range(speeds)} | {wanted:.2f} | {np.mean(speeds) - wanted:+.2f} |"
 
@@ -181,9 +181,9 @@ def one_way_row(density: float, runs: Runs = PAGE) -> str:
 def two_way_row(width: float, density: float, runs: Runs = PAGE) -> str:
     """Return the row of a two-way corridor."""
     episodes = runs.of(load_trial("two-way", density=density, width=width))
-    speeds = [forward_speed(one) for one in episodes]
+    speeds = [forward_speed(episode) for episode in episodes]
     jams = sum(speed < JAM for speed in speeds)
-    orders = [section_order(one) for one, speed in zip(episodes, speeds, strict=True) if speed >= JAM]
+    orders = [section_order(episode) for episode, speed in zip(episodes, speeds, strict=True) if speed >= JAM]
     order = f"{np.mean(orders):.2f}" if orders else "-"
     speed = f"{np.median(speeds):.2f} ({min(speeds):.2f} to {max(speeds):.2f})"
     return f"| {width:g} | {density:g} | {speed} | {order} | {jams} |"
@@ -191,7 +191,7 @@ def two_way_row(width: float, density: float, runs: Runs = PAGE) -> str:
 
 def file_row(density: float, runs: Runs = PAGE) -> str:
     """Return the row of a single file."""
-    speeds = [forward_speed(one) for one in runs.of(own_trial(FILE, count=round(20.0 * density)))]
+    speeds = [forward_speed(item) for item in runs.of(own_trial(FILE, count=round(20.0 * density)))]
     wanted = float(line_speed(density))
     return f"| {density:g} | {mean_and_range(speeds)} | {wanted:.2f} | {np.mean(speeds) - wanted:+.2f} |"
 
@@ -200,8 +200,8 @@ def door_row(width: float, runs: Runs = PAGE) -> str:
     """Return the row of a door."""
     half = 0.5 * width
     trial = own_trial(DOOR, half=half, count=LEAVING, routing=round(min(0.3, half - 0.05), 3))
-    times = [crossing_times(one, 1.4) for one in runs.of(trial)]
-    flows = [steady_flow(one) / width for one in times if len(one) == LEAVING]
+    times = [crossing_times(item, 1.4) for item in runs.of(trial)]
+    flows = [steady_flow(time) / width for time in times if len(time) == LEAVING]
     left = runs.seeds - len(flows)
     value = mean_and_range(flows) if flows else "-"
     return f"| {width:g} | {value} | {left} |"
@@ -210,13 +210,13 @@ def door_row(width: float, runs: Runs = PAGE) -> str:
 def sentences() -> list[str]:
     """Return the results that are one number each."""
     corner = PAGE.of(own_trial(CORNER))
-    around = sum(not one.active[-1].any() for one in corner)
-    seconds = float(np.mean([one.times[one.active.any(axis=1)][-1] for one in corner]))
+    around = sum(not item.active[-1].any() for item in corner)
+    seconds = float(np.mean([item.times[item.active.any(axis=1)][-1] for item in corner]))
     few = PAGE.of(own_trial(DOOR, half=0.5, count=3, routing=0.3))
-    through = sum(len(crossing_times(one, 1.4)) == 3 for one in few)
+    through = sum(len(crossing_times(item, 1.4)) == 3 for item in few)
     hall = dataclasses.replace(load_trial("bottleneck"), duration=180.0)
     count = 100
-    stand = sum(stands(one) for one in Runs(count).of(hall))
+    stand = sum(stands(item) for item in Runs(count).of(hall))
     return [
         f"* 20 people go around a corner of a corridor 2 m wide in {around} of {SEEDS} runs within 60 s; the last"
         f" arrives after {seconds:.0f} s in the mean.",
@@ -429,7 +429,7 @@ def main() -> None:
     name, *numbers = options.row
     if name not in ROWS:
         parser.error(f"--row {name}: there is no such row; give one of {', '.join(ROWS)}")
-    values = {key: float(value) for key, value in (one.split("=") for one in options.set)}
+    values = {key: float(value) for key, value in (item.split("=") for item in options.set)}
     print(ROWS[name](*map(float, numbers), runs=Runs(options.seeds, options.seconds, values)))
 
 

@@ -52,12 +52,12 @@ OPTIONS: dict[str, dict[str, Any]] = {
 
 def read(folder: Path, patterns: tuple[str, ...]) -> list[Trajectories]:
     """Return the recordings at 0.4 s."""
-    found = []
+    trajectories = []
     for pattern in patterns:
         for path in sorted(folder.glob(pattern)):
             tracks = load(path, **OPTIONS.get(pattern.partition("/")[0], {}))
-            found.append(tracks if abs(tracks.dt - STEP) < 1e-6 else tracks.resample(STEP))
-    return found
+            trajectories.append(tracks if abs(tracks.dt - STEP) < 1e-6 else tracks.resample(STEP))
+    return trajectories
 
 
 def trial_tracks(name: str) -> list[Trajectories]:
@@ -67,7 +67,7 @@ def trial_tracks(name: str) -> list[Trajectories]:
 
 def thinned(tracks: list[Trajectories], windows: int) -> list[tuple[Windows, Windows]]:
     """Return past and future of at most so many windows of each recording, evenly spaced."""
-    cut = [one.windows() for one in tracks]
+    cut = [track.windows() for track in tracks]
     every = [max(1, len(past) // windows) for past, _ in cut]
     return [(past[::n], future[::n]) for (past, future), n in zip(cut, every, strict=True)]
 
@@ -104,10 +104,10 @@ def main() -> None:
     for name in options.only:
         patterns = RECORDINGS.get(name) or LEARNED.get(name)
         tracks = trial_tracks(name) if patterns is None else read(options.data, patterns)
-        short = [one.name for one in tracks if np.unique(one.frame).size < ROWS]
+        short = [track.name for track in tracks if np.unique(track.frame).size < ROWS]
         if short:
             print(f"{name}: shorter than {ROWS} rows, not scored: {', '.join(short)}", file=sys.stderr)
-        cut = thinned([one for one in tracks if one.name not in short], options.windows)
+        cut = thinned([track for track in tracks if track.name not in short], options.windows)
         cut = [(with_noise(past, options.noise), future) for past, future in cut if future.scored.any()]
         scores = [Score.total([score_predictor(p, past, future, k) for past, future in cut]) for p, k in asked.values()]
         cells = " | ".join(f"{score.ade:.3f}/{score.fde:.3f}" for score in scores)

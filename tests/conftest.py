@@ -77,10 +77,10 @@ class Input:
 
     def get(self) -> object:
         """Return where it is; the test fails where it is missing."""
-        found = self.find()
-        if found is None:
+        result = self.find()
+        if result is None:
             pytest.fail(f"this test needs {self.what}: {self.remedy}", pytrace=False)
-        return found
+        return result
 
 
 def _folder(name: str) -> Path | None:
@@ -224,7 +224,7 @@ def input_of(name: str) -> Input:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Deselect the tests whose input is missing, and count them."""
-    optional = {name for name, one in INPUTS.items() if one.right or not STRICT}
+    optional = {name for name, item in INPUTS.items() if item.right or not STRICT}
     needed = {name for item in items for name in getattr(item, "fixturenames", ()) if name in optional}
     missing = [name for name in INPUTS if name in needed and INPUTS[name].find() is None]
     first = [next((name for name in missing if name in getattr(item, "fixturenames", ())), None) for item in items]

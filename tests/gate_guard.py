@@ -194,5 +194,5 @@ def is_importing() -> bool:
 
 def missing(marker: str, seen: list[str]) -> str:
     """Return the sentence that names the marker a test lacks and why it needs it."""
-    shown = "; ".join(dict.fromkeys(one[:200] for one in seen[:3]))
+    shown = "; ".join(dict.fromkeys(item[:200] for item in seen[:3]))
     return f"a test of the gate needs @pytest.mark.{marker} for this: {shown} (see CONTRIBUTING.md, Tiers of tests)"

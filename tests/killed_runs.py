@@ -65,8 +65,8 @@ def _is_over(process: int) -> bool:
 
 def _newest(folder: Path) -> int:
     """Return when something in a folder was added, renamed or removed last."""
-    places = [folder, *(one for one in folder.rglob("*") if one.is_dir())] if folder.is_dir() else []
-    return max((one.stat().st_mtime_ns for one in places), default=0)
+    places = [folder, *(item for item in folder.rglob("*") if item.is_dir())] if folder.is_dir() else []
+    return max((place.stat().st_mtime_ns for place in places), default=0)
 
 
 def _kill(process: int, out: Path, moment: float, change: bool) -> bool:

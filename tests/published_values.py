@@ -28,11 +28,11 @@ def plain(value: Any) -> Any:
         fields = [field.name for field in dataclasses.fields(value)]
         return {"class": type(value).__name__, **{name: plain(getattr(value, name)) for name in fields}}
     if isinstance(value, Mapping):
-        return {str(key): plain(one) for key, one in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple | set | frozenset):
-        return [plain(one) for one in value]
+        return [plain(item) for item in value]
     if isinstance(value, enum.Enum | Path | type) or not isinstance(value, str | int | float | bool | None):
         return str(value)
     return value
@@ -40,7 +40,7 @@ def plain(value: Any) -> Any:
 
 def made(classes: Mapping[str, type]) -> dict[str, Any]:
     """Return what every class is without arguments, but those that need some."""
-    found = {}
+    result = {}
     for name, kind in sorted(classes.items()):
         needed = [
             field.name
@@ -48,8 +48,8 @@ def made(classes: Mapping[str, type]) -> dict[str, Any]:
             if field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
         ]
         if not needed:
-            found[name] = plain(kind())
-    return found
+            result[name] = plain(kind())
+    return result
 
 
 def models() -> dict[str, Any]:
@@ -133,9 +133,9 @@ ROOMS: dict[str, Callable[[], dict[str, Any]]] = {
 def lines(value: Any, path: str = "") -> list[str]:
     """Return one line for each number or word of a tree, with its path."""
     if isinstance(value, dict) and value:
-        return [line for key, one in value.items() for line in lines(one, f"{path}/{key}")]
+        return [line for key, item in value.items() for line in lines(item, f"{path}/{key}")]
     if isinstance(value, list) and value:
-        return [line for key, one in enumerate(value) for line in lines(one, f"{path}/{key}")]
+        return [line for key, item in enumerate(value) for line in lines(item, f"{path}/{key}")]
     return [f"{path} = {json.dumps(value)}"]
 
 

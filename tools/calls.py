@@ -51,7 +51,7 @@ def _places(nodes: Iterable[ast.AST], prefix: str) -> Iterator[Place]:
             continue
         is_class = isinstance(node, ast.ClassDef)
         first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
-        hidden = not is_class and any(HIDING.search(ast.unparse(one)) for one in node.decorator_list)
+        hidden = not is_class and any(HIDING.search(ast.unparse(item)) for item in node.decorator_list)
         yield Place(prefix + node.name, first, node.body[0].lineno, node.end_lineno or first, is_class, hidden)
         yield from _places(node.body, f"{prefix}{node.name}." if is_class else f"{prefix}{node.name}.<locals>.")
 
@@ -84,7 +84,7 @@ def callers(records: Mapping[str, Mapping[str, Any]], path: str, name: str) -> l
     call = f"{path}:{name}"
     if name:
         return [test for test, record in records.items() if call in record["calls"]]
-    return [test for test, record in records.items() if any(one.startswith(call) for one in record["calls"])]
+    return [test for test, record in records.items() if any(item.startswith(call) for item in record["calls"])]
 
 
 def mentions(sources: Path, path: str, place: Place) -> set[tuple[str, str]]:
@@ -93,7 +93,7 @@ def mentions(sources: Path, path: str, place: Place) -> set[tuple[str, str]]:
     An empty name stands for the level of a module.
     """
     texts = {file.relative_to(sources).as_posix(): file.read_text(encoding="utf-8") for file in sources.rglob("*.py")}
-    found: set[tuple[str, str]] = set()
+    result: set[tuple[str, str]] = set()
     waiting, known = [(path, place.name)], {(path, place.name)}
     while waiting:
         home, name = waiting.pop()
@@ -103,11 +103,11 @@ def mentions(sources: Path, path: str, place: Place) -> set[tuple[str, str]]:
                 continue
             for other in _places_of(word, text):
                 if other is None or not other.hidden:
-                    found.add((file, other.name if other else ""))
+                    result.add((file, other.name if other else ""))
                 elif (file, other.name) not in known:
                     known.add((file, other.name))
                     waiting.append((file, other.name))
-    return found
+    return result
 
 
 def _imports(text: str, word: re.Pattern[str]) -> bool:
@@ -121,7 +121,7 @@ def _places_of(word: re.Pattern[str], text: str) -> set[Place | None]:
     skipped, functions = idle_lines(text), [place for place in places(text) if not place.is_class]
     lines = [k for k, line in enumerate(text.splitlines(), 1) if k not in skipped and word.search(line)]
     around = [[place for place in functions if place.first <= line <= place.last] for line in lines]
-    return {one[-1] if one else None for one in around}
+    return {item[-1] if item else None for item in around}
 
 
 def within(tests: Iterable[str], seconds: Mapping[str, float], limit: float) -> list[str]:

@@ -74,25 +74,25 @@ def branch_point(base: str) -> str:
 
 def changed_lines(base: str) -> dict[str, set[int]]:
     """Return the changed lines by file, as numbers of the working tree; a file that is gone has none."""
-    found = lines_of_diff(git("diff", "--unified=0", "--no-color", "--no-ext-diff", "--no-renames", base))
+    result = lines_of_diff(git("diff", "--unified=0", "--no-color", "--no-ext-diff", "--no-renames", base))
     for name in git("ls-files", "--others", "--exclude-standard", "-z").split("\0"):
         if name and (ROOT / name).is_file():
-            found[name] = set(range(1, 1 + (ROOT / name).read_bytes().count(b"\n") + 1))
-    return found
+            result[name] = set(range(1, 1 + (ROOT / name).read_bytes().count(b"\n") + 1))
+    return result
 
 
 def lines_of_diff(text: str) -> dict[str, set[int]]:
     """Return the changed lines by file of a diff without context; a removal counts for the lines around it."""
-    found: dict[str, set[int]] = {}
+    result: dict[str, set[int]] = {}
     name = ""
     for line in text.splitlines():
         if head := re.match(r'diff --git "?a/(.*?)"? "?b/', line):
             name = head[1]
-            found[name] = set()
+            result[name] = set()
         elif hunk := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@", line):
             first, count = int(hunk[1]), int(hunk[2] or 1)
-            found[name] |= set(range(first, first + count)) if count else {max(first, 1), first + 1}
-    return found
+            result[name] |= set(range(first, first + count)) if count else {max(first, 1), first + 1}
+    return result
 
 
 def record_file(test_file: str) -> Path:
@@ -166,9 +166,9 @@ def record(paths: list[str]) -> int:
             plan = {"sources": f"{ROOT}/{PACKAGE}/", "out": out.name, "seconds": LONGEST, "total": 1e9}
             run_pytest(plan, ["-q", "--tb=no", "-p", "no:cacheprovider", "-n", "0", *chunk])
             text = Path(out.name).read_text(encoding="utf-8")
-        found: Records = json.loads(text) if text else {}
+        records: Records = json.loads(text) if text else {}
         for file in chunk:
-            tests = {test: one for test, one in found.items() if test.split("::")[0] == file and "calls" in one}
+            tests = {test: one for test, one in records.items() if test.split("::")[0] == file and "calls" in one}
             if text:
                 store_record(file, tests)
             else:
@@ -198,7 +198,7 @@ def callers_in(path: str, lines: set[int], records: Records, notes: list[str]) -
     for place in found_places:
         calls = {(name, place.name)} if place else {(name, "")}
         if place and place.is_class:
-            calls = {(name, one.name) for one in every if one.name.startswith(f"{place.name}.")}
+            calls = {(name, item.name) for item in every if item.name.startswith(f"{place.name}.")}
         elif place and place.hidden:
             calls |= mentions(ROOT / PACKAGE, name, place)
         tests = {test for file, function in calls for test in callers(records, file, function)}
@@ -240,14 +240,14 @@ def choose(changes: dict[str, set[int]], budget: float) -> Choice:
             own += [file for file in users_of_helper(path) if file not in own]
     tests = {t for path in sources for t in callers_in(path, changes[path], records, choice.notes)}
     folders = tuple(f"{folder}/" for folder in rooms_of(sources))
-    tests |= {t for t, one in records.items() if one["starts"] and t.startswith(folders)} if folders else set()
+    tests |= {t for t, item in records.items() if item["starts"] and t.startswith(folders)} if folders else set()
     tests |= {t for t in records if t.startswith("tests/house/")}
     tests = {test for test in tests if test.split("::")[0] in known and test.split("::")[0] not in own}
     bare = [file for file, found in known.items() if found is None and file not in own]
     whole = [file for file in bare if file.startswith((*folders, "tests/house/"))]
     choice.modules = [path for path in sources if (ROOT / path).is_file() and ">>>" in _text(path)]
     seconds = {test: max(float(records[test]["seconds"]) / SLOWDOWN, 0.002) for test in tests}
-    spent = sum(one["seconds"] / SLOWDOWN for path in own for one in (known[path] or ({}, {}))[1].values())
+    spent = sum(item["seconds"] / SLOWDOWN for path in own for item in (known[path] or ({}, {}))[1].values())
     ordered = sorted(tests, key=lambda test: (seconds[test], test))
     chosen = within(ordered, seconds, budget - spent) if spent < budget else []
     totals: dict[str, float] = {}

@@ -22,7 +22,7 @@ def failed_twice() -> list[str]:
     """Return the live tests that failed again when they were repeated alone."""
     if not REPORT.is_file():
         return failed_tests("live")
-    return [one["test"] for one in json.loads(REPORT.read_text(encoding="utf-8"))["repeats"] if not one["passed"]]
+    return [item["test"] for item in json.loads(REPORT.read_text(encoding="utf-8"))["repeats"] if not item["passed"]]
 
 
 def main() -> None:

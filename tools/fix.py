@@ -118,12 +118,12 @@ def replace_once(file: str, pattern: str, text: str) -> None:
 def write_versions() -> None:
     """Write the version of the package into the files that repeat it."""
     text = (ROOT / "src/crowdbot/__init__.py").read_text(encoding="utf-8")
-    found = re.search(r'^__version__ = "(.+)"$', text, flags=re.M)
-    if found is None:
+    match = re.search(r'^__version__ = "(.+)"$', text, flags=re.M)
+    if match is None:
         raise StepFailure("src/crowdbot/__init__.py has no line __version__")
-    replace_once("pyproject.toml", r'^version = ".*"$', f'version = "{found[1]}"')
-    replace_once("CITATION.cff", r"^version: .*$", f"version: {found[1]}")
-    replace_once(".zenodo.json", r'"version": ".*?"', f'"version": "{found[1]}"')
+    replace_once("pyproject.toml", r'^version = ".*"$', f'version = "{match[1]}"')
+    replace_once("CITATION.cff", r"^version: .*$", f"version: {match[1]}")
+    replace_once(".zenodo.json", r'"version": ".*?"', f'"version": "{match[1]}"')
 
 
 def add_constraints() -> None:
@@ -309,9 +309,9 @@ def main(words: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("\nfix: interrupted")
         return 130
-    failed = [one.name for one in outcomes if one.state == "FAILED"]
-    changed = [one.name for one in outcomes if one.files]
-    print(f"fix: {len(outcomes)} steps in {sum(one.seconds for one in outcomes):.0f} s")
+    failed = [outcome.name for outcome in outcomes if outcome.state == "FAILED"]
+    changed = [outcome.name for outcome in outcomes if outcome.files]
+    print(f"fix: {len(outcomes)} steps in {sum(outcome.seconds for outcome in outcomes):.0f} s")
     for title, names in (("would change" if options.check else "changed", changed), ("failed", failed)):
         if names:
             print(f"fix: {title}: {', '.join(names)}")

@@ -140,14 +140,14 @@ def differences(results: Sequence[Result]) -> dict[str, dict[str, str]]:
     A test that is absent from a run counts only if the run came to its end: an order may not decide which tests exist.
     A test that had begun when a run died counts; when somebody interrupted the run, it does not.
     """
-    found: dict[str, dict[str, str]] = {}
+    result: dict[str, dict[str, str]] = {}
     for test in sorted({test for result in results for test in result.found}):
-        row = {one.run.name: one.found.get(test, "absent" if one.ended else "") for one in results}
-        interrupted = {one.run.name for one in results if one.status == INTERRUPTED}
+        row = {result.run.name: result.found.get(test, "absent" if result.ended else "") for result in results}
+        interrupted = {result.run.name for result in results if result.status == INTERRUPTED}
         row = {run: out for run, out in row.items() if out and not (out == "begun" and run in interrupted)}
         if len(set(row.values())) > 1:
-            found[test] = row
-    return found
+            result[test] = row
+    return result
 
 
 def report(results: Sequence[Result], paths: Sequence[str], tier: str, workers: str) -> int:
@@ -195,7 +195,7 @@ def main(words: list[str] | None = None) -> int:
         if results[-1].status == INTERRUPTED:
             break
     found = report(results, options.paths, options.tier, options.workers)
-    if len(results) < len(runs) or any(one.status == INTERRUPTED for one in results):
+    if len(results) < len(runs) or any(result.status == INTERRUPTED for result in results):
         print("flaky: interrupted")
         return INTERRUPTED
     return int(found > 0 or not all(result.ended for result in results))

@@ -51,12 +51,12 @@ def _tracks(*formats: str) -> Kind:
     def make(folder: Path) -> None:
         from synthetic_recordings import SYNTHETIC
 
-        for name, one in SYNTHETIC.items():
-            if one.format in formats:
+        for name, item in SYNTHETIC.items():
+            if item.format in formats:
                 path = Path(name)  # of a folder of files, the folder is the sample
                 sample = folder / (path.parent.name or name)
                 sample.mkdir()
-                one.write(sample / path.name)
+                item.write(sample / path.name)
                 if name.endswith(".mcap"):
                     _flatten(sample / name)
 

@@ -115,7 +115,7 @@ class Watch:
     def check(self, event: str, path: str | bytes | os.PathLike[str]) -> None:
         """Note a path outside the allowed folders."""
         place = os.path.realpath(os.fsdecode(path))
-        if not any(place == one or place.startswith(one + os.sep) for one in self.allowed):
+        if not any(place == item or place.startswith(item + os.sep) for item in self.allowed):
             self.seen.append(f"{event} {place}")
 
 

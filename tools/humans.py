@@ -120,14 +120,14 @@ def _split(name: str, m: Mesh, place: np.ndarray, weight: np.ndarray) -> list[di
     groups = {"cloth": ((TOP, UPPERARM, FOREARM, LINING), (BOTTOM, SHIN, SHOES))}.get(
         name, (tuple(range(len(REGIONS))),)
     )
-    found = []
+    result = []
     region = np.where(m.label == LINING, TOP, m.label)
     for labels in groups:
         own = np.isin(m.label, labels)
         used, index = np.unique(m.faces[own], return_inverse=True)
         shape = {"faces": index.reshape(-1, 3), "label": region[own]}
-        found.append(shape | {"place": place[:, used], "weight": weight[used]})
-    return found
+        result.append(shape | {"place": place[:, used], "weight": weight[used]})
+    return result
 
 
 def _level(k: int, parts: list[dict]) -> dict[str, np.ndarray]:

@@ -186,7 +186,7 @@ def _bones(data: Path, faces: dict[str, np.ndarray]) -> dict[str, tuple[np.ndarr
     def cubes(rows: list[tuple[str, str]]) -> np.ndarray:
         return np.concatenate([np.unique(faces[rig[bone][end]["cube_name"]]) for bone, end in rows])
 
-    found = {}
+    bones = {}
     for bone in BONES:
         stem, side = bone[:-2], bone[-2:]
         if stem in ("fingers_01", "fingers_02"):
@@ -197,8 +197,8 @@ def _bones(data: Path, faces: dict[str, np.ndarray]) -> dict[str, tuple[np.ndarr
             start, end = [(f"thumb_01{side}", "head")], [(f"thumb_03{side}", "tail")]
         else:
             start, end = [(bone, "head")], [(bone, "tail")]
-        found[bone] = cubes(start), cubes(end)
-    return found
+        bones[bone] = cubes(start), cubes(end)
+    return bones
 
 
 def _weights(data: Path, count: int) -> np.ndarray:

@@ -31,30 +31,30 @@ def check(file: Path) -> None:
         sys.exit(1)
 
 
-def _compared(one: np.lib.npyio.NpzFile, other: np.lib.npyio.NpzFile) -> list[tuple[str, float, float]]:
+def _compared(npz_file: np.lib.npyio.NpzFile, other: np.lib.npyio.NpzFile) -> list[tuple[str, float, float]]:
     """Differences of the people, who must be the same."""
     bones = [str(b) for b in other["bones"]]
-    same = [np.array_equal(one[key], other[key]) for key in ("bones", "parents", "regions", "part_names")]
+    same = [np.array_equal(npz_file[key], other[key]) for key in ("bones", "parents", "regions", "part_names")]
     rows = [("bones, parents, regions or parts that differ", float(same.count(False)), 0.0)]
-    people = [json.loads(str(f["people"])) for f in (one, other)]
+    people = [json.loads(str(f["people"])) for f in (npz_file, other)]
     for key, most in (("years", 0.0), ("H", 1e-6), ("mass", 2.0)):
         away = max(abs(a[key] - b[key]) for a, b in zip(*people, strict=True))
         rows.append((f"largest difference of {key}", away, most))
     for a, b in LENGTHS:
         size = [np.linalg.norm(f["joint_head"][:, bones.index(a)] - f["joint_head"][:, bones.index(b)], axis=1)
-                for f in (one, other)]  # fmt: skip
+                for f in (npz_file, other)]  # fmt: skip
         rows.append((f"largest difference of {a} to {b} [mm]", 1000 * float(np.abs(size[0] - size[1]).max()), 8.0))
     return rows
 
 
-def _sound(one: np.lib.npyio.NpzFile, file: Path) -> list[tuple[str, float, float]]:
+def _sound(npz_file: np.lib.npyio.NpzFile, file: Path) -> list[tuple[str, float, float]]:
     """Where soles, scalps and hems are, how thick the coarse levels are, and how large the file is."""
-    people, regions = json.loads(str(one["people"])), [str(r) for r in one["regions"]]
+    people, regions = json.loads(str(npz_file["people"])), [str(r) for r in npz_file["regions"]]
     tall = np.array([p["H"] for p in people])
     rows = [("size of the file [MB]", file.stat().st_size / 1e6, 1.6)]
     for k in range(3):
-        place, region = one[f"lod{k}_verts"] * UNIT, one[f"lod{k}_region"]
-        faces, face_region = one[f"lod{k}_faces"].astype(int), one[f"lod{k}_face_region"]
+        place, region = npz_file[f"lod{k}_verts"] * UNIT, npz_file[f"lod{k}_region"]
+        faces, face_region = npz_file[f"lod{k}_faces"].astype(int), npz_file[f"lod{k}_face_region"]
         shoes = place[:, region == regions.index("shoes"), 2].min(axis=1)
         scalp = place[:, region == regions.index("scalp"), 2].max(axis=1)
         rows.append((f"level {k}: sole off the floor [mm]", 1000 * float(np.abs(shoes).max()), 2.0))
@@ -69,18 +69,18 @@ def _sound(one: np.lib.npyio.NpzFile, file: Path) -> list[tuple[str, float, floa
                 (f"level {k}: height of the line from {a} to {b} varies by [mm]", spread, 6.0 if k == 0 else 15.0)
             )
         if k:
-            rows += [(f"level {k}: {name} [mm]", value, most) for name, value, most in _thick(one, k)]
+            rows += [(f"level {k}: {name} [mm]", value, most) for name, value, most in _thick(npz_file, k)]
     return rows
 
 
-def _thick(one: np.lib.npyio.NpzFile, k: int) -> list[tuple[str, float, float]]:
+def _thick(npz_file: np.lib.npyio.NpzFile, k: int) -> list[tuple[str, float, float]]:
     """How far the finest skin and cloth lie off a coarse level."""
     gaps = []
     for person in (0, 10, 25, 35, 40):
-        solid = int(one[f"lod{k}_parts"][:3, 1].sum())
-        points = one["lod0_verts"][person, : one["lod0_parts"][:3, 0].sum()] * UNIT
-        faces = one[f"lod{k}_faces"][:solid].astype(int)
-        gaps.append(nearest(points, one[f"lod{k}_verts"][person] * UNIT, faces)[1])
+        solid = int(npz_file[f"lod{k}_parts"][:3, 1].sum())
+        points = npz_file["lod0_verts"][person, : npz_file["lod0_parts"][:3, 0].sum()] * UNIT
+        faces = npz_file[f"lod{k}_faces"][:solid].astype(int)
+        gaps.append(nearest(points, npz_file[f"lod{k}_verts"][person] * UNIT, faces)[1])
     gap = 1000 * np.concatenate(gaps)
     limits = (1.5, 5.0) if k == 1 else (2.5, 12.0)
     return [("mean by which the finest lies outside, either way", abs(float(gap.mean())), limits[0]),

@@ -131,15 +131,15 @@ def lash_map() -> np.ndarray:
         (np.abs(np.abs(middle[:, 1]) - 0.03) < 0.03) & (np.abs(middle[:, 2] - EYE) < 0.02) & (middle[:, 0] > 0.08)
     ]
     a, z = grid()
-    found = np.zeros_like(a)
+    result = np.zeros_like(a)
     for i, j in rim:
         for share in np.linspace(0.0, 1.0, 9):
             p = mean[i] + share * (mean[j] - mean[i])
             angle = np.arctan2(p[1], p[0] - HEAD_AXIS)
             upper = p[2] > EYE - 0.001
             spot = np.exp(-((0.1 * (a - angle)) ** 2 + (z - p[2]) ** 2) / (0.0016 if upper else 0.0010) ** 2)
-            found = np.maximum(found, spot * (0.95 if upper else 0.5))
-    return found
+            result = np.maximum(result, spot * (0.95 if upper else 0.5))
+    return result
 
 
 def cloth_maps() -> dict[str, np.ndarray]:

@@ -107,9 +107,9 @@ def main() -> None:
     """Write the file."""
     rng = np.random.default_rng(0)
     people = [states(rng) for _ in range(ROOMS)]
-    arrays = {name: np.stack([one[name] for one in people]) for name in people[0]}
+    arrays = {name: np.stack([person[name] for person in people]) for name in people[0]}
     for model, count in STEPS.items():
-        found = [steps(model, one, count) for one in people]
+        found = [steps(model, person, count) for person in people]
         arrays |= {name: np.stack([one[name] for one in found]) for name in found[0]}
     np.savez_compressed(FILE, **arrays)
     print(f"{FILE}: {FILE.stat().st_size} bytes")

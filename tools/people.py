@@ -66,7 +66,7 @@ def row(
 ) -> Image3:  # fmt: skip
     """People beside each other, who come towards the camera."""
     count = len(names)
-    speeds = [SPEEDS.get(one, 0.0) if one != "walk" else speed for one in doing]
+    speeds = [SPEEDS.get(item, 0.0) if item != "walk" else speed for item in doing]
     scene, motion = moved(names, doing, speeds, np.arange(count) if variation is None else variation, apart)
     wide = apart * (count + 0.4)
     view = math.radians(22.0)

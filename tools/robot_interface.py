@@ -92,23 +92,28 @@ def page() -> str:
     interface = RobotInterface.of(example_trial())
     follows = RobotInterface.of(example_trial(), follows_clock=True)
     outputs = (
-        (f"`{one.name}`", f"`{one.kind}`", f"`{one.frame}`" if one.frame else "-", f"{one.rate:g}" if one.rate else "-",
-         one.quality.name, one.about)
-        for one in interface.outputs
+        (f"`{output.name}`", f"`{output.kind}`", f"`{output.frame}`" if output.frame else "-",
+         f"{output.rate:g}" if output.rate else "-", output.quality.name, output.about)
+        for output in interface.outputs
     )  # fmt: skip
     inputs = (
-        (f"`{one.name}`", " or ".join(f"`{kind}`" for kind in one.kinds), one.quality.name, one.about)
-        for one in follows.inputs
+        (
+            f"`{input_topic.name}`",
+            " or ".join(f"`{kind}`" for kind in input_topic.kinds),
+            input_topic.quality.name,
+            input_topic.about,
+        )
+        for input_topic in follows.inputs
     )
-    services = ((f"`/crowdbot/{name}`", f"`{one.kind}`", one.about) for name, one in SERVICES.items())
-    plain = ((f"`{name}`", f"`std_srvs/{one.kind}`", one.about) for name, one in PLAIN_SERVICES.items())
+    services = ((f"`/crowdbot/{name}`", f"`{item.kind}`", item.about) for name, item in SERVICES.items())
+    plain = ((f"`{name}`", f"`std_srvs/{item.kind}`", item.about) for name, item in PLAIN_SERVICES.items())
     transports = (
         (f"`{address}`", about) for address, _, about in (line.partition(", ") for _, line in TRANSPORTS.values())
     )
     qualities = (
-        (one.name, "reliable" if one.reliable else "best effort", "transient local" if one.latched else "volatile",
-         str(one.depth))
-        for one in QUALITIES
+        (item.name, "reliable" if item.reliable else "best effort", "transient local" if item.latched else "volatile",
+         str(item.depth))
+        for item in QUALITIES
     )  # fmt: skip
     return (
         HEAD + "\n" + table(("topic", "type", "frame", "rate", "QoS", "content"), outputs)

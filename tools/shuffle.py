@@ -65,9 +65,9 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
 
 def outcomes(text: str) -> dict[str, str]:
     """Return the outcome of each test from the lines of a run; ``begun`` is a test that did not end."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for line in text.splitlines():
         test, outcome = json.loads(line)
-        known = found.get(test, "begun")
-        found[test] = max(known, outcome, key=("begun", *WORST).index)
-    return found
+        known = result.get(test, "begun")
+        result[test] = max(known, outcome, key=("begun", *WORST).index)
+    return result

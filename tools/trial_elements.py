@@ -39,19 +39,19 @@ def _section(kind: ET.Element, parents: list[str]) -> Iterator[str]:
     if parents:
         yield from ("In " + ", ".join(f"[`<{name}>`](#{name})" for name in parents) + ".", "")
     attributes = kind.findall(f"{XS}attribute")
-    general = [one for one in attributes if not _words(one).startswith("of ")]
+    general = [attribute for attribute in attributes if not _words(attribute).startswith("of ")]
     if general:
         yield from ("| attribute | meaning |", "|---|---|")
-        yield from (f"| {_name(one)} | {_meaning(one)} |" for one in general)
+        yield from (f"| {_name(item)} | {_meaning(item)} |" for item in general)
         yield ""
     inner = sorted({child.get("name", "") for child in kind.iter(f"{XS}element")})
     if inner:
         yield from ("Elements inside: " + ", ".join(f"[`<{name}>`](#{name})" for name in inner) + ".", "")
     of_type: dict[str, list[str]] = {}
-    for one in attributes:
-        if one not in general:
-            for name in _words(one).removeprefix("of ").split(", "):
-                of_type.setdefault(name, []).append(f"`{one.get('name')}`")
+    for attribute in attributes:
+        if attribute not in general:
+            for name in _words(attribute).removeprefix("of ").split(", "):
+                of_type.setdefault(name, []).append(f"`{attribute.get('name')}`")
     if of_type:
         yield from ("| type | parameters |", "|---|---|")
         yield from (f"| `{name}` | {', '.join(of_type[name])} |" for name in sorted(of_type))
@@ -69,6 +69,6 @@ def _name(attribute: ET.Element) -> str:
 
 
 def _meaning(attribute: ET.Element) -> str:
-    values = [one.get("value", "") for one in attribute.iter(f"{XS}enumeration")]
+    values = [item.get("value", "") for item in attribute.iter(f"{XS}enumeration")]
     allowed = "one of " + ", ".join(f"`{value}`" for value in values) if values else ""
     return "; ".join(part for part in (_words(attribute), allowed) if part)

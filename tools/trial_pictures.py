@@ -80,7 +80,7 @@ def extent(trial: Trial, episode: Episode) -> tuple[Any, Any]:
     points += [np.array([robot.goal.position]) for robot in trial.robots]
     points += [np.asarray(ring) for ring in trial.stage.rings]
     points += [np.asarray(source.zone) for source in trial.sources]
-    whole = np.concatenate([np.asarray(one).reshape(-1, 2) for one in points])
+    whole = np.concatenate([np.asarray(point).reshape(-1, 2) for point in points])
     low, high = whole.min(axis=0) - 0.6, whole.max(axis=0) + 0.6
     middle, size = (low + high) / 2.0, np.maximum(high - low, (high - low).max() / 3.5)
     return middle - size / 2.0, middle + size / 2.0
@@ -151,7 +151,7 @@ def page(file: Path) -> None:
     for name in builtin_trials():
         preset = PRESETS.get(name)
         trial = load_trial(name)
-        crowd = ", ".join(f"`{kebab_case(type(one.model).__name__)}`" for one in Crowds.spread(trial.crowd))
+        crowd = ", ".join(f"`{kebab_case(type(item.model).__name__)}`" for item in Crowds.spread(trial.crowd))
         options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
         also = "" if preset is None else preset.also.replace("; ", "<br>")
         lines.append(f"| **{name}**<br>{trial.about} | ![{name}](trials/{name}.png) | {crowd} | {options} | {also} |")

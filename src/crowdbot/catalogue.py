@@ -59,13 +59,13 @@ def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
     known = [*KINDS, *listings]
     if kind is not None and kind not in known:
         raise UnknownName("kind", kind, known)
-    found: dict[str, dict[str, str]] = {}
+    result: dict[str, dict[str, str]] = {}
     for name in known if kind is None else [kind]:
         if name in KINDS:
-            found[name] = {key: _first_line(cls) for key, cls in _classes(name).items()}
+            result[name] = {key: _first_line(cls) for key, cls in _classes(name).items()}
         else:
-            found[name] = listings[name]()
-    return found
+            result[name] = listings[name]()
+    return result
 
 
 def papers(name: str) -> list[Paper]:
@@ -81,10 +81,10 @@ def papers(name: str) -> list[Paper]:
     meant = [cls for key, cls in classes.items() if key.split()[1].replace("-", "") == plain]
     if not meant:
         raise UnknownName("name", name, {key.split()[1] for key in classes})
-    found = list(dict.fromkeys(paper for cls in meant for paper in _papers_of(cls)))
-    if not found:
+    result = list(dict.fromkeys(paper for cls in meant for paper in _papers_of(cls)))
+    if not result:
         raise InputError(f"{name} has no paper; to cite crowdbot itself: crowdbot cite")
-    return found
+    return result
 
 
 def cite(thing: Any) -> str:
@@ -136,11 +136,11 @@ def _robots() -> dict[str, str]:
 def _humans() -> dict[str, str]:
     from crowdbot.humans import persons
 
-    found = {}
-    for one in persons():
-        who = [one.sex, f"{one.years} years"] if one.years else ["a plain figure"]
-        found[one.name] = ", ".join([*filter(None, who), f"{one.height:.2f} m", f"{one.mass:.0f} kg"])
-    return found
+    humans = {}
+    for person in persons():
+        who = [person.sex, f"{person.years} years"] if person.years else ["a plain figure"]
+        humans[person.name] = ", ".join([*filter(None, who), f"{person.height:.2f} m", f"{person.mass:.0f} kg"])
+    return humans
 
 
 def _presets() -> dict[str, str]:

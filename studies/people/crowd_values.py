@@ -73,7 +73,7 @@ class CrowdValues(NamedTuple):
             (self.corner - 47.0) / 3.0,
             self.stuck / 0.05,
         )
-        return float(sum(max(0.0, one) for one in above))
+        return float(sum(max(0.0, item) for item in above))
 
 
 NOT_RUN = CrowdValues(0.0, 0.0, 0.0, 1.0, (0.0, 20.0), 60.0, 1.0)
@@ -88,7 +88,7 @@ def with_sets(model: CrowdModel, sets: Sequence[Mapping[str, float]], copies: in
     [[2.0], [3.0], [2.0], [3.0]]
     """
     names = sets[0] if sets else ()
-    values: dict[str, Any] = {name: np.tile([float(one[name]) for one in sets], copies)[:, None] for name in names}
+    values: dict[str, Any] = {name: np.tile([float(set_[name]) for set_ in sets], copies)[:, None] for name in names}
     return dataclasses.replace(model, **values)
 
 
@@ -101,11 +101,11 @@ def measure_crowds(model: CrowdModel, sets: Sequence[Mapping[str, float]], start
         start: number of the start: initial positions and free speeds.
     """
     tracks = zip(_file(model, sets, start), _corridor(model, sets, start), _two_way(model, sets, start), strict=True)
-    found = [NOT_RUN._replace(single_file=float(a), corridor=float(b), two_way=float(c)) for a, b, c in tracks]
-    good = [k for k, one in enumerate(found) if one.penalty - NOT_RUN.penalty <= POOR]
-    for k, one in zip(good, _doors(model, [sets[k] for k in good], start), strict=True):
-        found[k] = found[k]._replace(**one)
-    return found
+    crowd_values = [NOT_RUN._replace(single_file=float(a), corridor=float(b), two_way=float(c)) for a, b, c in tracks]
+    good = [k for k, one in enumerate(crowd_values) if one.penalty - NOT_RUN.penalty <= POOR]
+    for k, door in zip(good, _doors(model, [sets[k] for k in good], start), strict=True):
+        crowd_values[k] = crowd_values[k]._replace(**door)
+    return crowd_values
 
 
 def _doors(model: CrowdModel, sets: Sequence[Mapping[str, float]], start: int) -> list[dict[str, Any]]:

@@ -97,7 +97,7 @@ def read_experiments(folder: Path, windows: int = 12, first: int = 0) -> tuple[R
     found = []
     for source in SOURCES:
         paths = sorted(folder.glob(source.path))
-        loaded = [one for one in (_windows(path, source.kind) for path in paths) if len(one[0])]
+        loaded = [item for item in (_windows(path, source.kind) for path in paths) if len(item[0])]
         total = sum(len(past) for past, _ in loaded)
         if total == 0:
             continue

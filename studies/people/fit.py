@@ -61,7 +61,7 @@ class Candidate:
     def objectives(self, experiments: Sequence[RecordedExperiment]) -> tuple[float, float, float, float]:
         """Return the means over kinds of experiments of the three errors of tracks, and the penalty of crowds."""
         kinds = [[self.tracks[e.name] for e in experiments if e.kind == kind] for kind in KINDS]
-        means = np.mean([np.mean(one, axis=0) for one in kinds if one], axis=0)
+        means = np.mean([np.mean(kind, axis=0) for kind in kinds if kind], axis=0)
         return float(means[0]), float(means[1]), float(means[2]), self.crowd.penalty
 
     def cost(self, experiments: Sequence[RecordedExperiment]) -> float:
@@ -118,7 +118,7 @@ class PopulationFit:
             raise InputError(f"a search from {len(starts)} starts needs a budget above it, not {budget}")
 
         def cost(candidates: Floats, which: Any) -> Floats:
-            rows = self.evaluate(name, [dict(zip(BOX, map(float, one), strict=True)) for one in candidates[:, 0, 0]])
+            rows = self.evaluate(name, [dict(zip(BOX, map(float, item), strict=True)) for item in candidates[:, 0, 0]])
             costs = np.array([row.cost(self.experiments) for row in rows])
             if self.report is not None:
                 best = int(np.argmin(costs))
@@ -126,7 +126,7 @@ class PopulationFit:
             return costs[:, None, None]
 
         low, high = (np.array([ends[k] for ends in BOX.values()]) for k in range(2))
-        begin = np.array([[one[key] for key in BOX] for one in starts])[:, None, None]
+        begin = np.array([[start[key] for key in BOX] for start in starts])[:, None, None]
         search = CMAES(population=POPULATION, width=width, tolerance=-np.inf)
         search.minimize(cost, low, high, [stream(0, "population", name)], budget, begin)
         return self.best()
@@ -134,7 +134,7 @@ class PopulationFit:
     def best(self, left_out: int | None = None) -> Candidate:
         """Return the best stored candidate for the experiments outside a fold."""
         used = [e for e in self.experiments if e.fold != left_out]
-        return min(self.candidates(), key=lambda one: one.cost(used))
+        return min(self.candidates(), key=lambda candidate: candidate.cost(used))
 
     def candidates(self) -> list[Candidate]:
         """Return the stored candidates of all searches."""
@@ -142,14 +142,14 @@ class PopulationFit:
 
     def evaluate(self, search: str, rows: Sequence[dict[str, float]]) -> list[Candidate]:
         """Return the candidates of some values; new ones are measured together and stored."""
-        new = [one for one in rows if _key(one) not in self.found]
+        new = [row for row in rows if _key(row) not in self.found]
         for candidate in self.measure(new) if new else ():
             self._write(search, candidate)
-        return [self.found[_key(one)] for one in rows]
+        return [self.found[_key(row)] for row in rows]
 
     def measure(self, rows: Sequence[dict[str, float]]) -> list[Candidate]:
         """Return the errors of some values."""
-        sets = [set_of(one) for one in rows]
+        sets = [set_of(row) for row in rows]
         tracks: list[dict[str, tuple[float, float, float]]] = [{} for _ in rows]
         for experiment in self.experiments:
             errors = measure_tracks(self.model, sets, experiment)
@@ -162,7 +162,7 @@ class PopulationFit:
                     float(distance[k]),
                 )
         crowds = measure_crowds(self.model, sets)
-        return [Candidate(*one) for one in zip(rows, tracks, crowds, strict=True)]
+        return [Candidate(*item) for item in zip(rows, tracks, crowds, strict=True)]
 
     def _write(self, search: str, candidate: Candidate) -> None:
         row = {"search": search, "values": candidate.values, "tracks": candidate.tracks, "crowd": candidate.crowd}
@@ -178,4 +178,4 @@ def _key(values: Mapping[str, float]) -> str:
 def _candidate(row: dict[str, Any]) -> Candidate:
     names = dict(zip(CrowdValues._fields, row["crowd"], strict=True))
     crowd = CrowdValues(**{**names, "queues": tuple(names["queues"])})
-    return Candidate(row["values"], {name: tuple(one) for name, one in row["tracks"].items()}, crowd)
+    return Candidate(row["values"], {name: tuple(item) for name, item in row["tracks"].items()}, crowd)

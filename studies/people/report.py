@@ -51,7 +51,7 @@ class SetProfile:
 
 def pareto_set(candidates: Sequence[Candidate], experiments: Sequence[RecordedExperiment]) -> list[Candidate]:
     """Return the candidates that no other one beats in all objectives, by cost."""
-    values = np.array([one.objectives(experiments) for one in candidates])
+    values = np.array([candidate.objectives(experiments) for candidate in candidates])
     kept = [
         k for k, own in enumerate(values) if not np.any(np.all(values <= own, axis=1) & np.any(values < own, axis=1))
     ]
@@ -77,11 +77,11 @@ def profile_sets(fit: PopulationFit, chosen: Candidate) -> list[SetProfile]:
     """Return the profile of each searched value: parts of its range that no candidate brings near the chosen one."""
     candidates = fit.candidates()
     costs = _costs(candidates, fit.experiments)
-    k = next(i for i, one in enumerate(candidates) if one is chosen)
-    found = []
+    k = next(i for i, candidate in enumerate(candidates) if candidate is chosen)
+    set_profiles = []
     for name, (low, high) in BOX.items():
         edges = np.linspace(low, high, BINS + 1)
-        part = np.clip(np.digitize([one.values[name] for one in candidates], edges) - 1, 0, BINS - 1)
+        part = np.clip(np.digitize([candidate.values[name] for candidate in candidates], edges) - 1, 0, BINS - 1)
         above, kept = [], []
         for b in range(BINS):
             own = np.flatnonzero(part == b)
@@ -93,24 +93,24 @@ def profile_sets(fit: PopulationFit, chosen: Candidate) -> list[SetProfile]:
             if np.percentile(costs[best, 1:] - costs[k, 1:], 2.5) <= 0.0 or best == k:
                 kept.append(b)
         ends = (float(edges[min(kept)]), float(edges[max(kept) + 1])) if kept else (low, high)
-        middle = tuple(float(one) for one in 0.5 * (edges[1:] + edges[:-1]))
-        found.append(SetProfile(name, chosen.values[name], middle, tuple(above), ends))
-    return found
+        middle = tuple(float(edge) for edge in 0.5 * (edges[1:] + edges[:-1]))
+        set_profiles.append(SetProfile(name, chosen.values[name], middle, tuple(above), ends))
+    return set_profiles
 
 
 def _costs(candidates: Sequence[Candidate], experiments: Sequence[RecordedExperiment]) -> Floats:
     """Return the costs ``[N, 1 + RESAMPLES]``: of all experiments, and of bootstrap samples of them within kinds."""
     rng = stream(0, "population", "profile")
     kinds: dict[str, list[str]] = {}
-    for one in experiments:
-        kinds.setdefault(one.kind, []).append(one.name)
+    for experiment in experiments:
+        kinds.setdefault(experiment.kind, []).append(experiment.name)
     total = np.zeros((len(candidates), 1 + RESAMPLES, 3))
     for names in kinds.values():
-        values = np.array([[one.tracks[name] for name in names] for one in candidates])
+        values = np.array([[candidate.tracks[name] for name in names] for candidate in candidates])
         drawn = rng.integers(0, len(names), (RESAMPLES, len(names)))
         total[:, 0] += values.mean(axis=1) / len(kinds)
         total[:, 1:] += values[:, drawn].mean(axis=2) / len(kinds)
-    penalty = np.array([one.crowd.penalty for one in candidates])
+    penalty = np.array([candidate.crowd.penalty for candidate in candidates])
     return np.asarray(total @ np.asarray(WEIGHTS[:3]) + WEIGHTS[3] * penalty[:, None])
 
 
@@ -133,7 +133,7 @@ def _left_out(fit: PopulationFit, before: Candidate) -> list[str]:
     ]
     for fold, _, own, old in fold_rows(fit, before):
         names = ", ".join(e.name for e in fit.experiments if e.fold == fold)
-        cells = [f"{one:.3f}" for one in (*own[:3], *old[:3])]
+        cells = [f"{item:.3f}" for item in (*own[:3], *old[:3])]
         lines.append(f"| {names} | {' | '.join(cells)} |")
     return lines
 
@@ -143,11 +143,11 @@ def _pareto(fit: PopulationFit) -> list[str]:
         "| cost | 0.4 s | 4.8 s | times to collision | single file [m/s] | corridor [m/s] | flow [1/(m s)] | queues |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    for one in pareto_set(fit.candidates(), fit.experiments)[:12]:
-        early, mean, ttc, _ = one.objectives(fit.experiments)
-        crowd = one.crowd
+    for item in pareto_set(fit.candidates(), fit.experiments)[:12]:
+        early, mean, ttc, _ = item.objectives(fit.experiments)
+        crowd = item.crowd
         lines.append(
-            f"| {one.cost(fit.experiments):.3f} | {early:.3f} | {mean:.3f} | {ttc:.2f} | {crowd.single_file:.2f}"
+            f"| {item.cost(fit.experiments):.3f} | {early:.3f} | {mean:.3f} | {ttc:.2f} | {crowd.single_file:.2f}"
             f" | {crowd.corridor:.2f} | {crowd.flow:.2f} | {crowd.queues[0]:.0f}, {crowd.queues[1]:.0f} |"
         )
     return lines
@@ -158,9 +158,9 @@ def _profiles(profiles: Sequence[SetProfile]) -> list[str]:
         "| value | chosen | 95 % | identified | lowest cost above the chosen, over its range |",
         "|---|---|---|---|---|",
     ]
-    for one in profiles:
-        above = ", ".join("-" if np.isnan(v) else f"{v:.2f}" for v in one.above)
-        name = one.name.replace("_", " ")
-        low, high = one.interval
-        lines.append(f"| {name} | {one.best:.3g} | {low:.3g} to {high:.3g} | {one.identified} | {above} |")
+    for profile in profiles:
+        above = ", ".join("-" if np.isnan(v) else f"{v:.2f}" for v in profile.above)
+        name = profile.name.replace("_", " ")
+        low, high = profile.interval
+        lines.append(f"| {name} | {profile.best:.3g} | {low:.3g} to {high:.3g} | {profile.identified} | {above} |")
     return lines

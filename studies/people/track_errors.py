@@ -65,15 +65,15 @@ def measure_tracks(
     """
     rows = [_measure(model, sets, past, future) for past, future in experiment.parts]
     known, people = 0, []
-    for one in rows:
-        people.append(one.person + known)
-        known += int(one.person.max(initial=-1)) + 1
+    for row in rows:
+        people.append(row.person + known)
+        known += int(row.person.max(initial=-1)) + 1
     return TrackErrors(
         np.concatenate(people),
-        np.concatenate([one.early for one in rows], axis=1),
-        np.concatenate([one.mean for one in rows], axis=1),
-        np.sum([one.ttc for one in rows], axis=0),
-        np.sum([one.ttc_real for one in rows], axis=0),
+        np.concatenate([row.early for row in rows], axis=1),
+        np.concatenate([row.mean for row in rows], axis=1),
+        np.sum([row.ttc for row in rows], axis=0),
+        np.sum([row.ttc_real for row in rows], axis=0),
     )
 
 
@@ -111,7 +111,7 @@ def _measure(model: CrowdModel, sets: Sequence[Mapping[str, float]], past: Windo
     _, person = np.unique(future.id[scored], return_inverse=True)
     last = past.position[:, -1]
     people = scored[:, None] & future.present
-    ttc = np.stack([time_to_collision_counts(last, one, people, past.dt) for one in place])
+    ttc = np.stack([time_to_collision_counts(last, item, people, past.dt) for item in place])
     real = time_to_collision_counts(last, future.position, people, past.dt)
     return TrackErrors(person.astype(np.int64), error[:, :, 0][:, scored], error.mean(axis=2)[:, scored], ttc, real)
 
@@ -122,7 +122,7 @@ def _run(rollout: Rollout, scene: Scene, past: Windows, sets: Sequence[Mapping[s
     crowd = scene.environments(np.tile(np.arange(W), len(sets)))
     values: dict[str, Any] = {}
     for name in sets[0] if sets else ():
-        each = np.repeat([float(one[name]) for one in sets], W)
+        each = np.repeat([float(set_[name]) for set_ in sets], W)
         values[name] = np.ascontiguousarray(np.broadcast_to(each[:, None], crowd.shape))
     taken = dataclasses.replace(rollout, model=dataclasses.replace(rollout.model, **values))
     found = taken.run(crowd, past, steps)

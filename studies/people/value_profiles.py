@@ -104,11 +104,11 @@ class ValueStudy:
     def costs(self) -> tuple[Floats, Floats, Floats]:
         """Return the costs ``[S]``, their part of tracks ``[S]``, and bootstrap draws of the costs ``[S, R]``."""
         each = self.tracks @ np.asarray(WEIGHTS[:3])
-        crowd = WEIGHTS[3] * np.array([one.penalty for one in self.crowds])
+        crowd = WEIGHTS[3] * np.array([crowd.penalty for crowd in self.crowds])
         rng = stream(0, "population", "values")
         mean, drawn = np.zeros(len(each)), np.zeros((len(each), RESAMPLES))
         groups = [[k for k, kind in enumerate(self.kinds) if kind == wanted] for wanted in KINDS]
-        groups = [one for one in groups if one]
+        groups = [group for group in groups if group]
         for own in groups:
             mean += each[:, own].mean(axis=1) / len(groups)
             drawn += each[:, own][:, rng.integers(0, len(own), (RESAMPLES, len(own)))].mean(axis=2) / len(groups)
@@ -117,9 +117,9 @@ class ValueStudy:
     def profiles(self) -> list[ValueProfile]:
         """Return the profile of each value."""
         cost, tracks, drawn = self.costs()
-        found = []
+        value_profiles = []
         for name in RANGES:
-            own = [0, *(k for k, one in enumerate(self.sets) if one[name] != self.sets[0][name])]
+            own = [0, *(k for k, set_ in enumerate(self.sets) if set_[name] != self.sets[0][name])]
             own.sort(key=lambda k: self.sets[k][name])
             best = min(own, key=lambda k: cost[k])
             kept = [k for k in own if np.percentile(drawn[k] - drawn[best], 2.5) <= NOISE]
@@ -128,8 +128,8 @@ class ValueStudy:
             columns = [tuple(map(float, row)) for row in (cost[own] - cost[0], *ends, tracks[own] - tracks[0])]
             limits = values[own.index(kept[0])], values[own.index(kept[-1])]
             above, low, high, part = columns
-            found.append(ValueProfile(name, self.sets[0][name], tuple(values), above, low, high, part, limits))
-        return found
+            value_profiles.append(ValueProfile(name, self.sets[0][name], tuple(values), above, low, high, part, limits))
+        return value_profiles
 
     def fold_errors(self) -> list[tuple[int, list[str], Floats, Floats]]:
         """Return, for each fold, its experiments, the errors of the preset there, and those of the best other set.
@@ -138,10 +138,10 @@ class ValueStudy:
         are means over the experiments of the fold.
         """
         cost = self.tracks @ np.asarray(WEIGHTS[:3])
-        penalty = WEIGHTS[3] * np.array([one.penalty for one in self.crowds])
+        penalty = WEIGHTS[3] * np.array([crowd.penalty for crowd in self.crowds])
         rows = []
         for fold in range(FOLDS):
-            out = np.array([one == fold for one in self.folds])
+            out = np.array([item == fold for item in self.folds])
             if not np.any(out) or np.all(out):
                 continue
             best = int(np.argmin(cost[:, ~out].mean(axis=1) + penalty))
@@ -155,20 +155,21 @@ class ValueStudy:
                  " times to collision |", "|---|---|---|---|---|---|---|"]  # fmt: skip
         rows = self.fold_errors()
         for _, names, own, other in rows:
-            lines.append(f"| {', '.join(names)} | {' | '.join(f'{one:.3f}' for one in (*own, *other))} |")
+            lines.append(f"| {', '.join(names)} | {' | '.join(f'{item:.3f}' for item in (*own, *other))} |")
         if rows:
             means = np.mean([np.concatenate([own, other]) for *_, own, other in rows], axis=0)
-            lines.append(f"| mean | {' | '.join(f'{one:.3f}' for one in means)} |")
+            lines.append(f"| mean | {' | '.join(f'{item:.3f}' for item in means)} |")
         head = (
             "| value | preset | 95 % | identified | cost above the preset, from low to high values | of which tracks |"
         )
         lines += ["", head, "|---|---|---|---|---|---|"]
-        for one in self.profiles():
-            cells = [", ".join(f"{v:.2f}" for v in row) for row in (one.cost, one.tracks)]
-            low, high = one.interval
-            name = one.name.replace("_", " ")
+        for profile in self.profiles():
+            cells = [", ".join(f"{v:.2f}" for v in row) for row in (profile.cost, profile.tracks)]
+            low, high = profile.interval
+            name = profile.name.replace("_", " ")
             lines.append(
-                f"| {name} | {one.shipped:g} | {low:.3g} to {high:.3g} | {one.identified} | {cells[0]} | {cells[1]} |"
+                f"| {name} | {profile.shipped:g} | {low:.3g} to {high:.3g} | {profile.identified}"
+                f" | {cells[0]} | {cells[1]} |"
             )
         return "\n".join(lines)
 
@@ -193,22 +194,22 @@ def study_values(
     sets = [shipped]
     for name, ends in RANGES.items():
         sets += [{**shipped, name: float(v)} for v in np.linspace(*ends, points).round(4) if v != shipped[name]]
-    constant = [keep_velocity(one) for one in experiments]
+    constant = [keep_velocity(experiment) for experiment in experiments]
     known = {}
     if state.exists():
         known = {row["key"]: row for row in map(json.loads, state.read_text(encoding="utf-8").splitlines())}
-    todo = [one for one in sets if _key(one) not in known]
+    todo = [set_ for set_ in sets if _key(set_) not in known]
     for begin in range(0, len(todo), AT_ONCE):
         report(len(sets) - len(todo) + begin, len(sets))
         for row in _measure(model, todo[begin : begin + AT_ONCE], experiments, constant):
             known[row["key"]] = row
             with state.open("a", encoding="utf-8") as out:
                 out.write(json.dumps(row) + "\n")
-    rows = [known[_key(one)] for one in sets]
+    rows = [known[_key(set_)] for set_ in sets]
     return ValueStudy(
-        tuple(one.name for one in experiments),
-        tuple(one.kind for one in experiments),
-        tuple(one.fold for one in experiments),
+        tuple(experiment.name for experiment in experiments),
+        tuple(experiment.kind for experiment in experiments),
+        tuple(experiment.fold for experiment in experiments),
         tuple(sets),
         np.array([row["tracks"] for row in rows]),
         tuple(CrowdValues(*row["crowd"]) for row in rows),
@@ -222,14 +223,14 @@ def draw_profiles(study: ValueStudy) -> Figure:
     profiles = study.profiles()
     figure = Figure(figsize=(11.0, 5.2), layout="constrained")
     axes = figure.subplots(2, -(-len(profiles) // 2), sharey=True, squeeze=False)
-    for axis, one in zip(axes.flat, profiles, strict=False):
-        axis.axvspan(*one.interval, color="0.9", lw=0)
-        axis.fill_between(one.values, one.low, one.high, color="tab:blue", alpha=0.25, lw=0)
-        axis.plot(one.values, one.cost, ".-", color="tab:blue", label="all")
-        axis.plot(one.values, one.tracks, ":", color="tab:orange", label="tracks alone")
-        axis.axvline(one.shipped, color="0.3", lw=0.8)
+    for axis, profile in zip(axes.flat, profiles, strict=False):
+        axis.axvspan(*profile.interval, color="0.9", lw=0)
+        axis.fill_between(profile.values, profile.low, profile.high, color="tab:blue", alpha=0.25, lw=0)
+        axis.plot(profile.values, profile.cost, ".-", color="tab:blue", label="all")
+        axis.plot(profile.values, profile.tracks, ":", color="tab:orange", label="tracks alone")
+        axis.axvline(profile.shipped, color="0.3", lw=0.8)
         axis.axhline(0.0, color="0.3", lw=0.5)
-        axis.set_xlabel(one.name.replace("_", " "))
+        axis.set_xlabel(profile.name.replace("_", " "))
         axis.set_ylim(-0.1, 0.6)
     for axis in axes.flat[len(profiles) :]:
         axis.axis("off")
@@ -260,7 +261,8 @@ def _measure(
             row.append((float(near), float(far), float(distance[k])))
     crowds = measure_crowds(model, sets)
     return [
-        {"key": _key(one), "tracks": own, "crowd": crowd} for one, own, crowd in zip(sets, tracks, crowds, strict=True)
+        {"key": _key(set_), "tracks": own, "crowd": crowd}
+        for set_, own, crowd in zip(sets, tracks, crowds, strict=True)
     ]
 
 

@@ -7,7 +7,7 @@ from crowdbot.benchmark.speed.bridge_loads import LOADED_BRIDGES, bridge_load
 from crowdbot.core import InputError
 
 
-@pytest.mark.parametrize("connection", [pytest.param(one, marks=pytest.mark.sweep) for one in LOADED_BRIDGES[1:]])
+@pytest.mark.parametrize("connection", [pytest.param(item, marks=pytest.mark.sweep) for item in LOADED_BRIDGES[1:]])
 def test_a_bridge_sends_scan_image_odometry_and_transforms_on_a_quarter_of_a_core(connection):
     check(connection, bridge_load(connection, 5.0), 5.0)
 

@@ -76,7 +76,7 @@ def test_the_grid_holds_what_a_drive_can_do():
     grid = speed_grid(Omnidirectional(max_speed=0.5))
     assert any(twist.left for twist in grid)
     assert all(twist.forward != 0.0 for twist in speed_grid(AckermannDrive()))
-    names = [one.name for one in manoeuvres(Robot.load("pepper"))]
+    names = [manoeuvre.name for manoeuvre in manoeuvres(Robot.load("pepper"))]
     assert names.count("grid") == 26
     assert names[-5:] == ["straight", "ramp", "sine", "weave", "slip"]
 
@@ -106,10 +106,10 @@ def test_qolo_keeps_its_wheels_on_the_floor():
 
 def test_the_command_prints_a_table_or_json(capsys, tmp_path):
     assert main(["bench", "drives", "--robot", "differential", "--quick", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["rows"][0]["robot"] == "differential"
-    assert found["rows"][0]["failures"] == []
-    assert found["bars"] == dict(DRIVE_BARS)
+    loads = json.loads(capsys.readouterr().out)
+    assert loads["rows"][0]["robot"] == "differential"
+    assert loads["rows"][0]["failures"] == []
+    assert loads["bars"] == dict(DRIVE_BARS)
 
 
 @pytest.mark.parametrize(

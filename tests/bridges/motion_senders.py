@@ -47,22 +47,22 @@ def rotate(q: Quaternion, v: Sequence[float]) -> Vector:
 
 def about(axis: str, angle: float) -> Quaternion:
     half = math.sin(angle / 2)
-    return (math.cos(angle / 2), *(half * (axis == one) for one in "xyz"))  # type: ignore[return-value]
+    return (math.cos(angle / 2), *(half * (axis == item) for item in "xyz"))  # type: ignore[return-value]
 
 
 def posed(turns: dict[str, Quaternion], where: Vector = (0.0, 0.0, 0.0)) -> list[tuple[Vector, Quaternion]]:
     """Return position and global rotation of each segment; ``turns`` are rotations relative to the parent."""
-    found: list[tuple[Vector, Quaternion]] = []
+    result: list[tuple[Vector, Quaternion]] = []
     for k, name in enumerate(SEGMENTS):
         own = turns.get(name, IDENTITY)
         if PARENTS[k] < 0:
             x, y, z = T_POSE[0]
-            found.append(((x + where[0], y + where[1], z + where[2]), own))
+            result.append(((x + where[0], y + where[1], z + where[2]), own))
             continue
-        (x, y, z), above = found[PARENTS[k]]
+        (x, y, z), above = result[PARENTS[k]]
         dx, dy, dz = rotate(above, [a - b for a, b in zip(T_POSE[k], T_POSE[PARENTS[k]], strict=True)])
-        found.append(((x + dx, y + dy, z + dz), product(above, own)))
-    return found
+        result.append(((x + dx, y + dy, z + dz), product(above, own)))
+    return result
 
 
 def walk(t: float) -> list[tuple[Vector, Quaternion]]:

@@ -60,7 +60,7 @@ def drive(transport, folder):
         server, _, port = meeting.address.partition(":")
         places = {"192.168.0.2": server, "9090": port, "8765": port, "25001": port}
         assert program[0] == ("/usr/bin/python3" if transport == "ros1" else "python")
-        words = [*meeting.words, *(places.get(one, one) for one in program[1:])]
+        words = [*meeting.words, *(places.get(item, item) for item in program[1:])]
         second = begin(words, folder, meeting.environment)
         meeting.callback(second.kill)
         wait(lambda: second.poll() is not None or (transport != "tcp" and number_of_orders(out) > 10), 120.0, 0.5)

@@ -109,7 +109,9 @@ class FoxgloveLink(SocketLink):
 
     def begin(self):
         kinds = (("/robot/cmd_vel", "geometry_msgs/Twist"), ("/clock", "rosgraph_msgs/Clock"))
-        rows = [{"id": k, "topic": one, "encoding": "json", "schemaName": kind} for k, (one, kind) in enumerate(kinds)]
+        rows = [
+            {"id": k, "topic": item, "encoding": "json", "schemaName": kind} for k, (item, kind) in enumerate(kinds)
+        ]
         self.send(json.dumps({"op": "advertise", "channels": rows}))
 
     def time_of(self, data):

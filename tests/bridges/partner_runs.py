@@ -185,7 +185,7 @@ class OdometryMemory(MemoryTransport):
         super().__init__((topic,))
 
     def publish(self, messages):
-        self.sent = [one for one in messages if one.topic in self.topics] or self.sent
+        self.sent = [message for message in messages if message.topic in self.topics] or self.sent
 
 
 def time_until_still(memory):

@@ -32,7 +32,7 @@ def look(ros):
         "service_type": ros.get_service_type("/crowdbot/step_simulation"),
         "nodes": ros.get_nodes(),
         "time": ros.get_time().to_sec(),
-        "details": [one["type"] for one in ros.get_message_details("geometry_msgs/Twist")["typedefs"]],
+        "details": [item["type"] for item in ros.get_message_details("geometry_msgs/Twist")["typedefs"]],
         "features": features.call(roslibpy.ServiceRequest())["features"]["features"],
         "x": found["state"]["pose"]["position"]["x"],
     }

@@ -34,8 +34,8 @@ def start():
         return servers[-1]
 
     yield started
-    for one in servers:
-        one.stop()
+    for server in servers:
+        server.stop()
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_no_page_of_a_browser_connects_without_the_token_or_a_name(start, site, 
         def tries(kind, query="", **options):
             address = f"ws://127.0.0.1:{start(kind, **options).port}/{query}"
             protocols = ["foxglove.sdk.v1"] * (kind == "foxglove")
-            return [one.evaluate(TRY, [address, protocols]) for one in frames]
+            return [frame.evaluate(TRY, [address, protocols]) for frame in frames]
 
         for kind in KINDS:
             assert tries(kind) == ["refused", "refused"], kind

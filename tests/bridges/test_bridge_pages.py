@@ -26,12 +26,12 @@ def local(monkeypatch, tmp_path):
 def test_every_transport_has_a_page():
     assert PAGES.keys() | {"simulated"} == TRANSPORTS.keys(), "a simulated robot has no program of its own"
     titles = [(HOW_TO / f"{page}.md").read_text(encoding="utf-8").partition("\n")[0] for page in PAGES.values()]
-    assert [one for one in titles if not one.startswith("# Your robot in a crowd in five minutes: ")] == []
+    assert [title for title in titles if not title.startswith("# Your robot in a crowd in five minutes: ")] == []
 
 
 @pytest.mark.live
 @pytest.mark.parametrize(
-    "transport", ["rosbridge", "ros2", *(pytest.param(one, marks=pytest.mark.sweep) for one in ("foxglove", "tcp"))]
+    "transport", ["rosbridge", "ros2", *(pytest.param(item, marks=pytest.mark.sweep) for item in ("foxglove", "tcp"))]
 )
 def test_the_commands_of_a_page_drive_a_robot(transport, tmp_path):
     assert drive(transport, tmp_path) > 10
@@ -53,7 +53,7 @@ def test_the_commands_of_the_page_of_naoqi_move_the_virtual_robot(tmp_path):
         first = begin(simulation_words(simulation, f"naoqi:{robot.url}"), tmp_path, os.environ)
         wait(lambda: (tmp_path / "driven").exists() or first.poll() is not None, 120.0)
         places = {program[1]: str(ROOT / program[1]), program[2]: robot.url}
-        words = [places.get(one, one) for one in program[1:]]
+        words = [places.get(item, item) for item in program[1:]]
         second = begin([sys.executable, *words], tmp_path, os.environ)
         wait(lambda: number_of_orders(tmp_path / "driven") > 20 or second.poll() is not None, 120.0, look=0.5)
         assert robot.ask()["place"][0] > 0.0

@@ -55,12 +55,12 @@ class Client:
         if message["op"] == "serverInfo":
             self.info = message
         elif message["op"] == "advertise":
-            self.channels |= {one["topic"]: one for one in message["channels"]}
+            self.channels |= {item["topic"]: item for item in message["channels"]}
         elif message["op"] == "unadvertise":
             gone = message["channelIds"]
-            self.channels = {topic: one for topic, one in self.channels.items() if one["id"] not in gone}
+            self.channels = {topic: channel for topic, channel in self.channels.items() if channel["id"] not in gone}
         elif message["op"] == "advertiseServices":
-            self.services |= {one["name"]: one for one in message["services"]}
+            self.services |= {item["name"]: item for item in message["services"]}
         elif message["op"] == "status":
             self.statuses.append(message["message"])
         elif message["op"] == "serviceCallFailure":
@@ -102,10 +102,10 @@ class Client:
         head = struct.pack("<BIII", 2, service["id"], number, len(encoding))
         self.ws.send(head + encoding.encode() + payload)
         self.read(lambda: number in self.responses)
-        found = self.responses[number]
-        if isinstance(found, str):
-            return found
-        return interface_store().deserialize_cdr(found, service["response"]["schemaName"])
+        result = self.responses[number]
+        if isinstance(result, str):
+            return result
+        return interface_store().deserialize_cdr(result, service["response"]["schemaName"])
 
     def playback(self, command, speed=1.0, seek=None):
         self.ws.send(struct.pack("<BBfBQI", 3, command, speed, seek is not None, seek or 0, 2) + b"r1")
@@ -120,14 +120,14 @@ def joined(server):
 
 
 def names(reader):
-    return [(one.topic.topic, one.stamp, bytes(one.data)) for one in reader.messages()]
+    return [(message.topic.topic, message.stamp, bytes(message.data)) for message in reader.messages()]
 
 
 def test_channels_are_the_topics_of_the_trial_and_messages_those_of_the_recorder(tmp_path):
     server = FoxgloveServer(port=0)
     with Running(TRIAL, [server], "step", out=tmp_path) as running, joined(server) as client:
         interface = running.run.port.interface
-        assert set(client.channels) == {one.name for one in interface.outputs}
+        assert set(client.channels) == {output.name for output in interface.outputs}
         scan = client.channels["/robot/scan"]
         assert (scan["encoding"], scan["schemaName"]) == ("cdr", "sensor_msgs/msg/LaserScan")
         assert (scan["schemaEncoding"], scan["schema"]) == ("ros2msg", Messages().definition(scan["schemaName"]))
@@ -140,9 +140,9 @@ def test_channels_are_the_topics_of_the_trial_and_messages_those_of_the_recorder
     free = run_bridge(TRIAL, [], 0, tmp_path / "free", BridgeClock("free"))
     assert done.digest == free.digest
     with (tmp_path / "episode.mcap").open("rb") as stream:
-        recorded = {one[:2]: one[2] for one in names(McapReader(stream))}
+        recorded = {name[:2]: name[2] for name in names(McapReader(stream))}
     both = [(data, recorded[topic, stamp]) for topic, stamp, data in client.messages if (topic, stamp) in recorded]
-    assert len([one for one in client.messages if one[0] == "/robot/scan"]) >= 18
+    assert len([message for message in client.messages if message[0] == "/robot/scan"]) >= 18
     assert len(both) > 40
     assert all(sent == written for sent, written in both)
 
@@ -164,7 +164,7 @@ def test_a_client_drives_the_robot_by_json_and_cdr_and_the_episode_replays(tmp_p
         done = running.end()
     orders = [order for _, order in read_episode(tmp_path / "episode.mcap").orders]
     assert len(orders) == 20
-    assert {(one.forward, one.turn, one.source) for one in orders} == {(0.4, 0.1, "foxglove")}
+    assert {(order.forward, order.turn, order.source) for order in orders} == {(0.4, 0.1, "foxglove")}
     assert done.metrics["path_length"] > 0.4
     assert replay(tmp_path / "episode.mcap").equal
 
@@ -299,14 +299,14 @@ def test_another_trial_brings_its_channels():
         answer = client.call("load_world", world_resource={"uri": "circle-crossing"})
         assert answer.result.result == 1, answer
         client.read(lambda: client.info["sessionId"] != session)
-        wanted = {one.name for one in RobotInterface.of(load_trial("circle-crossing")).outputs}
+        wanted = {output.name for output in RobotInterface.of(load_trial("circle-crossing")).outputs}
         client.read(lambda: set(client.channels) == wanted)
 
 
 def test_only_allowed_topics_are_offered():
     server = FoxgloveServer(port=0, topics=["/robot/*", "/crowdbot/get_*"])
     with Running(SHORT, [server], "step"), joined(server) as client:
-        assert all(one.startswith("/robot/") for one in client.channels)
+        assert all(channel.startswith("/robot/") for channel in client.channels)
         assert "/crowdbot/step_simulation" not in client.services
         client.advertise(1, "/crowdbot/order", "std_msgs/String")
         client.publish(1, b"{}")
@@ -337,7 +337,7 @@ def test_the_layout_that_ships_shows_topics_that_exist():
     layout = json.loads(files("crowdbot").joinpath("assets", "bridges", "foxglove-layout.json").read_text())
     assert layout == foxglove_layout(trial)
     interface = RobotInterface.of(trial)
-    outputs, inputs = ({one.name for one in rows} for rows in (interface.outputs, interface.inputs))
+    outputs, inputs = ({row.name for row in rows} for rows in (interface.outputs, interface.inputs))
     panels = layout["configById"]
     assert set(panels["3D!scene"]["topics"]) <= outputs
     assert panels["3D!scene"]["layers"]["urdf"]["topic"] in outputs

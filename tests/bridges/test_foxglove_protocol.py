@@ -25,12 +25,12 @@ def graph():
 @pytest.fixture
 def session(graph):
     session = FoxgloveSession(graph, lambda: None)
-    assert [one["op"] for one in texts(session)] == ["serverInfo", "advertise", "advertiseServices"]
+    assert [text["op"] for text in texts(session)] == ["serverInfo", "advertise", "advertiseServices"]
     return session
 
 
 def texts(session):
-    return [json.loads(one) for one in session.take()[0] if isinstance(one, str)]
+    return [json.loads(item) for item in session.take()[0] if isinstance(item, str)]
 
 
 def send(session, op, **fields):
@@ -52,7 +52,7 @@ def test_a_slow_client_gets_the_newest_message_all_events_and_latched_ones_late(
     for k in range(2, 5):
         graph.deliver([message("/robot/scan", k), message("/crowdbot/orders", k), message("/people", k)])
     frames, _ = session.take()
-    assert [(struct.unpack_from("<BIQ", one), one[13:]) for one in frames] == [
+    assert [(struct.unpack_from("<BIQ", frame), frame[13:]) for frame in frames] == [
         ((1, 1, 4), b"\4"), ((1, 2, 2), b"\2"), ((1, 2, 3), b"\3"), ((1, 2, 4), b"\4"), ((1, 3, 1), b"\1"),
     ]  # fmt: skip
     assert graph.wanted == {"/robot/scan", "/crowdbot/orders", "/map"}
@@ -66,7 +66,7 @@ def test_commands_services_and_the_clock(graph, session):
     send(session, "advertise", channels=[row])
     assert "/clock" in graph.wanted
     session.handle(struct.pack("<BI", 1, 3) + b'{"linear": {"x": 0.5}}')
-    assert [one.forward for one in graph.inbox.take_orders()] == [0.5]
+    assert [order.forward for order in graph.inbox.take_orders()] == [0.5]
     graph.deliver([message("/clock", 7)])
     assert session.take()[0] == [struct.pack("<BQ", 2, 7)]
     service = next(k for k, name in graph.services.items() if name == "get_simulation_state")
@@ -86,13 +86,13 @@ def test_a_client_sees_and_uses_what_is_allowed_only():
     graph = FoxgloveGraph(interface, Inbox(interface), print, ["/robot/scan", "/crowdbot/get_*"])
     session = FoxgloveSession(graph, lambda: None)
     _, channels, services = texts(session)
-    assert [one["topic"] for one in channels["channels"]] == ["/robot/scan"]
-    assert {one["name"].startswith("/crowdbot/get_") for one in services["services"]} == {True}
+    assert [item["topic"] for item in channels["channels"]] == ["/robot/scan"]
+    assert {item["name"].startswith("/crowdbot/get_") for item in services["services"]} == {True}
     row = {"id": 3, "topic": "/robot/cmd_vel", "encoding": "json", "schemaName": "geometry_msgs/Twist"}
     send(session, "advertise", channels=[row])
     session.handle(struct.pack("<BI", 1, 3) + b'{"linear": {"x": 0.5}}')
     session.handle(struct.pack("<BBfBQI", 3, 1, 1.0, 0, 0, 2) + b"r1")
-    said = [one["message"] for one in texts(session)]
+    said = [text["message"] for text in texts(session)]
     assert "'/robot/cmd_vel' is not among the topics" in said[0]
     assert "'/crowdbot/set_simulation_state' is not among the services" in said[1]
     assert (graph.inbox.take_orders(), graph.inbox.take_calls()) == ([], [])

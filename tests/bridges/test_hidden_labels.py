@@ -39,7 +39,7 @@ def sent(truth, trial=None):
     for _ in range(5):
         port.publish(simulation)
         simulation.advance()
-    return {one.topic: one.message for one in memory.sent}
+    return {item.topic: item.message for item in memory.sent}
 
 
 @pytest.mark.parametrize("truth", [False, True])
@@ -104,26 +104,28 @@ def test_without_the_truth_only_what_a_real_robot_has_is_offered_and_sent(everyt
     allowed |= {"/robot/odom"}
     hidden = [mount.name for mount in robot.sensors if type(mount.sensor).__name__ == "GroundTruthPeople"]
     assert hidden
-    allowed |= {f"/robot/{one.name}{end}" for one in robot.sensors if one.name not in hidden for end in MEASURED}
+    allowed |= {
+        f"/robot/{sensor.name}{end}" for sensor in robot.sensors if sensor.name not in hidden for end in MEASURED
+    }
     port = StackPort(everything, [], ["robot"])
-    offered = {one.name for one in port.interface.outputs}
+    offered = {output.name for output in port.interface.outputs}
     assert offered <= allowed
     messages = sent(False, everything)
     assert {*messages} <= offered
-    assert {f"/robot/{one.name}" for one in robot.sensors if one.name == "scan"} <= {*messages}
+    assert {f"/robot/{sensor.name}" for sensor in robot.sensors if sensor.name == "scan"} <= {*messages}
     rows = messages["/tf"].transforms
     assert {row.child_frame_id.partition("/")[0] for row in rows} == {"robot"}
     inbox = Inbox(port.interface)
     rosbridge, foxglove = RosGraph(port.interface, inbox, print), FoxgloveGraph(port.interface, inbox, print)
-    inputs = {one.name for one in port.interface.inputs}
+    inputs = {input_topic.name for input_topic in port.interface.inputs}
     assert {*rosbridge.topics} - inputs == {*foxglove.channels} == offered
 
 
 def test_with_the_truth_everything_of_its_robots_and_the_scene_is_offered(everything):
-    offered = {one.name for one in StackPort(everything, [], ["robot"], truth=True).interface.outputs}
-    whole = [one for one in RobotInterface.of(everything).outputs if one.robot in ("", "robot")]
-    assert offered == {one.name for one in whole} | {"/robot/goal"}
-    assert {one.child_frame_id for one in sent(True, everything)["/tf"].transforms} >= {"other/base_link"}
+    offered = {output.name for output in StackPort(everything, [], ["robot"], truth=True).interface.outputs}
+    whole = [output for output in RobotInterface.of(everything).outputs if output.robot in ("", "robot")]
+    assert offered == {item.name for item in whole} | {"/robot/goal"}
+    assert {transform.child_frame_id for transform in sent(True, everything)["/tf"].transforms} >= {"other/base_link"}
 
 
 def test_odometry_without_a_sensor_of_it_is_the_truth():

@@ -140,7 +140,7 @@ class SlowProgram(MemoryTransport):
     def publish(self, messages):
         super().publish(messages)
         with self.news:
-            self.queue += [one.nanoseconds // STEP for one in messages if one.topic == "/clock"]
+            self.queue += [message.nanoseconds // STEP for message in messages if message.topic == "/clock"]
             self.news.notify_all()
 
     def stop(self):
@@ -176,8 +176,8 @@ class PromptProgram(MemoryTransport):
     """The same commands, immediately."""
 
     def publish(self, messages):
-        for one in (one for one in messages if one.topic == "/clock"):
-            self.inbox.receive("/robot/cmd_vel", command_of(one.nanoseconds // STEP), "memory")
+        for item in (message for message in messages if message.topic == "/clock"):
+            self.inbox.receive("/robot/cmd_vel", command_of(item.nanoseconds // STEP), "memory")
 
 
 def command_of(tick):
@@ -196,6 +196,6 @@ def test_a_program_that_computes_longer_than_the_repeat_gives_the_digest_of_a_fr
     slow = SlowProgram({0: 0.5, 3: 1.3, 4: 0.5})
     with Running(trial, [slow], "commands") as running:
         done = running.end(120.0)
-    times = [one.nanoseconds // STEP for one in slow.sent if one.topic == "/clock"]
+    times = [item.nanoseconds // STEP for item in slow.sent if item.topic == "/clock"]
     assert times.count(3) > 1, "the instant was sent again"
     assert done.digest == run_bridge(trial, [PromptProgram()], 0, None, BridgeClock("free")).digest

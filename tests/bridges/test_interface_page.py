@@ -26,13 +26,13 @@ def test_every_kind_of_sensor_keeps_the_announced_types_and_frames():
     trial = load_tool().example_trial()
     transport = MemoryTransport()
     run_bridge(trial, [transport], 0, None, BridgeClock("free"))
-    known = {one.name: one for one in transport.interfaces[0].outputs}
+    known = {output.name: output for output in transport.interfaces[0].outputs}
     sent = {}
-    for one in transport.sent:
-        sent.setdefault(one.topic, []).append(one)
+    for item in transport.sent:
+        sent.setdefault(item.topic, []).append(item)
     assert {*sent} <= {*known}
-    sensors = [one for one in known.values() if one.quality.name == "sensor" and not one.name.endswith("/labels")]
-    assert [one.name for one in sensors if one.name not in sent] == []
+    sensors = [item for item in known.values() if item.quality.name == "sensor" and not item.name.endswith("/labels")]
+    assert [sensor.name for sensor in sensors if sensor.name not in sent] == []
     for name, found in sent.items():
         assert {one.kind for one in found} == {known[name].kind}, name
         frames = {one.message.header.frame_id for one in found if hasattr(one.message, "header")}

@@ -27,7 +27,7 @@ def bvh(rows: list[list[float]], scale: float = 100.0, unit: str = "0.01") -> by
     """Return a BVH file, y up, facing z, as motion capture software exports it."""
 
     def xyz(*numbers: float) -> str:
-        return " ".join(f"{scale * one:.6g}" for one in numbers)
+        return " ".join(f"{scale * number:.6g}" for number in numbers)
 
     text = f"HIERARCHY\nROOT Hips {{ OFFSET {xyz(0, 0, 0)}\n"
     text += " CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
@@ -104,8 +104,8 @@ def test_a_bad_bvh_file_is_refused_with_the_line(old: bytes, new: bytes, message
 
 def mvnx(identity: bool = True, head: str = "") -> bytes:
     def frame(kind: str, t: float, pose: list[tuple[senders.Vector, senders.Quaternion]]) -> str:
-        places = " ".join(f"{one:.6f}" for place, _ in pose for one in place)
-        turns = " ".join(f"{one:.6f}" for _, turn in pose for one in turn)
+        places = " ".join(f"{item:.6f}" for place, _ in pose for item in place)
+        turns = " ".join(f"{item:.6f}" for _, turn in pose for item in turn)
         return (
             f'<frame time="{round(1000 * t)}" tc="00:00" ms="0" type="{kind}">'
             f"<orientation>{turns}</orientation><position>{places}</position></frame>"

@@ -38,10 +38,12 @@ def test_a_recording_of_xsens_moves_the_whole_body(tmp_path: Path) -> None:
             running.step()
     orders = [order for step in read_episode(tmp_path / "episode.mcap").orders for order in [step[1]]]
     assert len(orders) == 9  # 0.5 s of motion; one sample for each step, at its time
-    assert all(isinstance(one, AvatarOrder) and one.skeleton is not None for one in orders)
-    np.testing.assert_allclose([one.time for one in orders], 0.05 * np.arange(1, 10))
-    np.testing.assert_allclose([one.y for one in orders], 1.0 + np.array([one.time for one in orders]), atol=0.03)
-    np.testing.assert_allclose([one.heading for one in orders], np.pi / 2, atol=1e-6)
+    assert all(isinstance(order, AvatarOrder) and order.skeleton is not None for order in orders)
+    np.testing.assert_allclose([order.time for order in orders], 0.05 * np.arange(1, 10))
+    np.testing.assert_allclose(
+        [order.y for order in orders], 1.0 + np.array([order.time for order in orders]), atol=0.03
+    )
+    np.testing.assert_allclose([order.heading for order in orders], np.pi / 2, atol=1e-6)
     assert replay(tmp_path / "episode.mcap").equal
 
 
@@ -95,7 +97,7 @@ def test_a_live_stream_moves_a_person_in_real_time_and_the_episode_replays(tmp_p
 @pytest.mark.live
 def test_motive_moves_a_person_and_a_robot() -> None:
     with Motive() as motive:
-        texts = [f"natnet:127.0.0.1:{motive.port}#{one}" for one in ("Anna=guide", "Cart=twin@1,0")]
+        texts = [f"natnet:127.0.0.1:{motive.port}#{item}" for item in ("Anna=guide", "Cart=twin@1,0")]
         (capture,) = parse_captures(texts, TRIAL)
         with capture:
             while len(capture.stream.subjects()) < 2:
@@ -116,8 +118,8 @@ def test_the_example_sender_is_understood() -> None:
         done = subprocess.run([sys.executable, str(script), str(stream.port), "0.5"], capture_output=True, text=True)
         time.sleep(0.1)
     assert done.returncode == 0, done.stderr
-    found = stream.statistics("0")
-    assert (found.samples, found.lost, found.refused) == (30, 0, 0)
+    statistics = stream.statistics("0")
+    assert (statistics.samples, statistics.lost, statistics.refused) == (30, 0, 0)
 
 
 def test_a_pose_that_no_person_can_have_is_counted_and_the_run_goes_on() -> None:

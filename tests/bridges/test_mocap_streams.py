@@ -49,7 +49,7 @@ def test_scale_information_gives_the_rest_pose_and_centimetres_are_found() -> No
     metres = fed(senders.mxtp13(), senders.mxtp02(senders.posed({}), 1, 0.0))
     large = [((100 * x, 100 * y, 100 * z), turn) for (x, y, z), turn in senders.posed({})]
     centimetres = fed(senders.mxtp02(large, 1, 0.0))
-    ((_, a),), ((_, b),) = (one.read("0", 0.0, 0.05) for one in (metres, centimetres))
+    ((_, a),), ((_, b),) = (item.read("0", 0.0, 0.05) for item in (metres, centimetres))
     np.testing.assert_allclose(a.skeleton.rest, senders.T_POSE, atol=1e-6)
     np.testing.assert_allclose(a.position, b.position, atol=1e-5)
     assert b.skeleton.leg_length("l") == pytest.approx(0.87, abs=1e-5)
@@ -70,9 +70,9 @@ def test_a_pose_in_two_parts_is_put_together_whatever_comes_first() -> None:
 
 def test_lost_and_late_samples_are_counted_and_dropped() -> None:
     stream = fed(*(senders.mxtp02(senders.walk(k / 100), k, k / 100) for k in (0, 1, 2, 6, 5, 7)))
-    found = stream.statistics()
-    assert (found.samples, found.lost, found.refused) == (5, 3, 0)
-    assert found.rate == pytest.approx(100.0)
+    statistics = stream.statistics()
+    assert (statistics.samples, statistics.lost, statistics.refused) == (5, 3, 0)
+    assert statistics.rate == pytest.approx(100.0)
 
 
 BAD = {
@@ -184,7 +184,7 @@ def test_samples_have_the_simulated_time_at_which_they_were_made() -> None:
         if kind == "sample":
             stream.take(senders.mxtp02(senders.walk(k / 240), k, 150.0 + k / 240), "127.0.0.1:5", at)
         else:
-            stamps += [(time, one.time - 150.0) for time, one in stream.read("", 0.05 * k, 0.05 * k + 0.05)]
+            stamps += [(time, item.time - 150.0) for time, item in stream.read("", 0.05 * k, 0.05 * k + 0.05)]
     errors = [stamp - made for stamp, made in stamps[3:]]
     assert len(stamps) == 39
     assert max(errors) - min(errors) < 0.0015
@@ -266,5 +266,7 @@ def test_the_fake_server_is_understood_by_an_independent_client() -> None:
                 time.sleep(0.002)
     frame, names = frames[-1], described[0]
     assert frame.rigid_bodies[0].pos[0] == pytest.approx(1.0)
-    assert [one.name for one in names.skeletons[0].rigid_body_descriptions][:2] == ["Anna_Hip", "Anna_Ab"]
+    assert [rigid_body_description.name for rigid_body_description in names.skeletons[0].rigid_body_descriptions][
+        :2
+    ] == ["Anna_Hip", "Anna_Ab"]
     assert frame.skeletons[0].rigid_bodies[0].pos[2] == pytest.approx(frame.suffix.timestamp, abs=1e-5)

@@ -103,7 +103,7 @@ def test_a_program_on_the_robot_sees_the_virtual_person_and_its_motion_moves_the
         told = robot.ask()
     assert bridge.share > LEAST
     assert told["virtual"] > 100
-    assert any("reads saw the virtual values of the robot, which rewrites them" in one for one in running.notes)
+    assert any("reads saw the virtual values of the robot, which rewrites them" in note for note in running.notes)
     assert 0.6 < told["nearest"] < 1.1
     assert done.metrics["collision"] == 0.0
     episode = read_episode(tmp_path / "episode.mcap")
@@ -122,7 +122,9 @@ def test_the_digest_in_odd_portions_is_that_of_a_free_run_and_all_sensors_are_wr
         memory = robot.ask()["values"]
         free = run_bridge(trial(2.0), [], 0, tmp_path / "free", BridgeClock("free"))
     assert done.digest == free.digest
-    assert all(f"Device/SubDeviceList/Platform/{one}/Sensor/Value" in memory for one in ("Front/Sonar", "Back/Bumper"))
+    assert all(
+        f"Device/SubDeviceList/Platform/{item}/Sensor/Value" in memory for item in ("Front/Sonar", "Back/Bumper")
+    )
 
 
 KILLS = pytest.mark.parametrize(

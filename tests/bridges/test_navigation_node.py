@@ -118,14 +118,14 @@ class Driver(MemoryTransport):
         self.driver = ScanDriver((goal.x, goal.y))
 
     def publish(self, messages):
-        for one in messages:
-            command, message = None, one.message
-            if one.topic == "/robot/odom":
+        for item in messages:
+            command, message = None, item.message
+            if item.topic == "/robot/odom":
                 place, turn = message.pose.pose.position, message.pose.pose.orientation
-                command = self.driver.take_pose(one.nanoseconds, place.x, place.y, heading_of(turn.z, turn.w))
-            elif one.topic == "/robot/scan":
+                command = self.driver.take_pose(item.nanoseconds, place.x, place.y, heading_of(turn.z, turn.w))
+            elif item.topic == "/robot/scan":
                 ranges = message.ranges.tolist()
-                command = self.driver.take_scan(one.nanoseconds, ranges, message.angle_min, message.angle_increment)
+                command = self.driver.take_scan(item.nanoseconds, ranges, message.angle_min, message.angle_increment)
             if command is not None:
                 twist = {"linear": {"x": command[0]}, "angular": {"z": command[1]}}
                 self.inbox.receive("/robot/cmd_vel", twist, "memory")
@@ -141,8 +141,8 @@ def reference():
 
 def test_the_page_names_every_program_and_its_first_commands_start_one():
     page = (EXAMPLES.parents[1] / "docs" / "how-to" / "navigation-node.md").read_text(encoding="utf-8")
-    programs = sorted(one.name for one in EXAMPLES.glob("navigate_*.py"))
-    assert [one for one in programs if f"`{one} " not in page] == []
+    programs = sorted(item.name for item in EXAMPLES.glob("navigate_*.py"))
+    assert [program for program in programs if f"`{program} " not in page] == []
     trial, program = re.search(r"^crowdbot run (\S+) .*?^python (\S+) --goal 4,0$", page, re.M | re.S).groups()
     goal = load_trial(str(EXAMPLES.parents[1] / trial)).robots[0].goal
     assert (goal.x, goal.y) == (4.0, 0.0)

@@ -35,13 +35,13 @@ class Driver(MemoryTransport):
 
     def publish(self, messages):
         super().publish(messages)
-        for one in (one for one in messages if one.topic == "/tf"):
-            drive(self, 0.4, 0.3 if one.nanoseconds // STEP % 7 < 4 else -0.3)
+        for item in (message for message in messages if message.topic == "/tf"):
+            drive(self, 0.4, 0.3 if item.nanoseconds // STEP % 7 < 4 else -0.3)
 
 
 def recorded(path):
     with path.open("rb") as stream:
-        return [(one.topic.topic, one.stamp, bytes(one.data)) for one in McapReader(stream).messages()]
+        return [(message.topic.topic, message.stamp, bytes(message.data)) for message in McapReader(stream).messages()]
 
 
 def test_a_steered_run_replays_to_the_byte(trial, tmp_path):
@@ -72,7 +72,7 @@ def test_the_clock_does_not_change_the_result(trial, mode, tmp_path):
     with Running(trial, [driver], mode, 40.0 if mode == "paced" else 1.0, tmp_path / mode) as running:
         if mode == "step":
             answers = [driver.call("step_simulation", {"steps": steps}) for steps in (1, 7, 22, 30)]
-            assert [one["result"]["result"] for one in answers] == [1, 1, 1, 1]
+            assert [answer["result"]["result"] for answer in answers] == [1, 1, 1, 1]
         for k in range(90 if mode == "follow" else 0):
             now = 37_000_000 * k
             driver.inbox.receive("/clock", {"clock": {"sec": now // 10**9, "nanosec": now % 10**9}}, "test")
@@ -85,11 +85,11 @@ def test_the_clock_does_not_change_the_result(trial, mode, tmp_path):
 def test_what_is_recorded_is_what_is_sent(trial, tmp_path):
     driver = Driver()
     done = run_bridge(trial, [driver], 0, tmp_path, BridgeClock("free"))
-    sent = {(one.topic, one.nanoseconds, one.cdr) for one in driver.sent}
+    sent = {(item.topic, item.nanoseconds, item.cdr) for item in driver.sent}
     rows = [row for row in recorded(done.path) if row[0] not in NOT_SENT]
     assert len(rows) > 200
     assert [row[:2] for row in rows if row not in sent] == []
-    assert {one.topic for one in driver.sent} - {row[0] for row in rows} == {"/map"}
+    assert {item.topic for item in driver.sent} - {row[0] for row in rows} == {"/map"}
 
 
 def test_topics_keep_the_announced_type_frame_and_rate(tmp_path):
@@ -101,18 +101,18 @@ def test_topics_keep_the_announced_type_frame_and_rate(tmp_path):
     transport = MemoryTransport()
     run_bridge(trial, [transport], 0, None, BridgeClock("free"))
     interface = transport.interfaces[0]
-    known = {one.name: one for one in interface.outputs}
-    assert {one.topic for one in transport.sent} <= {*known}
+    known = {output.name: output for output in interface.outputs}
+    assert {item.topic for item in transport.sent} <= {*known}
     for name, topic in known.items():
-        found = [one for one in transport.sent if one.topic == name]
-        assert {one.kind for one in found} <= {topic.kind}, name
-        frames = {one.message.header.frame_id for one in found if hasattr(one.message, "header")}
+        items = [item for item in transport.sent if item.topic == name]
+        assert {one.kind for one in items} <= {topic.kind}, name
+        frames = {one.message.header.frame_id for one in items if hasattr(one.message, "header")}
         assert frames <= {topic.frame}, name
         if topic.rate:
             steps = max(1, round(1 / topic.rate / trial.step))
-            assert len(found) == pytest.approx(2.0 / (steps * trial.step), abs=2), name
+            assert len(items) == pytest.approx(2.0 / (steps * trial.step), abs=2), name
         elif topic.quality.latched:
-            assert len(found) == 1, name
+            assert len(items) == 1, name
 
 
 def test_commands_are_newest_only_and_counted(trial):
@@ -185,7 +185,7 @@ def test_a_robot_stops_when_no_command_comes(trial):
 
     transport = Once()
     run_bridge(trial, [transport], 0, None, BridgeClock("free"))
-    speeds = [one.message.twist.twist.linear.x for one in transport.sent if one.topic == "/robot/ground_truth/odom"]
+    speeds = [item.message.twist.twist.linear.x for item in transport.sent if item.topic == "/robot/ground_truth/odom"]
     assert max(speeds) == pytest.approx(0.5)
     assert speeds[-1] == 0.0
     assert np.argmax(speeds) <= 11
@@ -201,13 +201,13 @@ def test_only_external_robots_are_driven_if_there_are_some(trial):
         ),
     )
     assert steered_trial(both) is both
-    assert [one.navigator for one in steered_trial(trial).robots] == [ExternalNavigator(timeout=0.5)]
+    assert [robot.navigator for robot in steered_trial(trial).robots] == [ExternalNavigator(timeout=0.5)]
 
 
 def test_robots_have_their_own_name_spaces(trial):
     first = trial.robots[0]
     pair = dataclasses.replace(trial, robots=(first, dataclasses.replace(first, name="second", y=1.0, x=-6.0)))
-    names = {one.name for one in RobotInterface.of(pair).outputs}
+    names = {output.name for output in RobotInterface.of(pair).outputs}
     assert {"/robot/scan", "/second/scan", "/robot/odom", "/second/odom"} <= names
     assert len(names) == len(RobotInterface.of(pair).outputs)
 
@@ -219,9 +219,9 @@ def test_robots_have_their_own_name_spaces(trial):
     transport = Second()
     run_bridge(pair, [transport], 0, None, BridgeClock("free"))
     places = {}
-    for one in transport.sent:
-        if one.topic.endswith("ground_truth/odom"):
-            places.setdefault(one.topic, []).append(one.message.pose.pose.position.x)
+    for item in transport.sent:
+        if item.topic.endswith("ground_truth/odom"):
+            places.setdefault(item.topic, []).append(item.message.pose.pose.position.x)
     assert places["/robot/ground_truth/odom"][-1] == first.x
     assert places["/second/ground_truth/odom"][-1] > -5.5
 
@@ -241,7 +241,7 @@ def test_an_external_clock_does_not_go_back(trial):
                 break
             time.sleep(0.01)
     assert "went back to 0.5 s from 1 s" in transport.reports[0][1]
-    assert "/clock" not in {one.topic for one in transport.sent}
+    assert "/clock" not in {item.topic for item in transport.sent}
 
 
 def test_a_run_that_cannot_keep_up_says_so(trial):
@@ -253,7 +253,7 @@ def test_a_run_that_cannot_keep_up_says_so(trial):
     now = iter(range(10**6))
     pace = Pace(0.05, 1.0, monotonic=lambda: next(now) * 1.0)
     remarks = [pace.note_step() for _ in range(8)]
-    assert next(one for one in remarks if one) == "the run cannot keep up: 0.06 instead of 1 times real time"
+    assert next(remark for remark in remarks if remark) == "the run cannot keep up: 0.06 instead of 1 times real time"
     transport = Slow()
     assert run_bridge(load_trial("frontal", duration=0.5), [transport], 0).steps == 10
 
@@ -276,11 +276,11 @@ class LateProgram(MemoryTransport):
 
     def publish(self, messages):
         super().publish(messages)
-        for one in (one for one in messages if one.topic == "/tf"):
-            if sum(one.nanoseconds == other.nanoseconds for other in self.sent if other.topic == "/tf") > 1 or (
-                one.nanoseconds not in (0, 100_000_000)
+        for item in (message for message in messages if message.topic == "/tf"):
+            if sum(item.nanoseconds == other.nanoseconds for other in self.sent if other.topic == "/tf") > 1 or (
+                item.nanoseconds not in (0, 100_000_000)
             ):
-                turn = 0.3 if one.nanoseconds % 150_000_000 else -0.3
+                turn = 0.3 if item.nanoseconds % 150_000_000 else -0.3
                 self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "memory")
 
 
@@ -288,13 +288,13 @@ def test_an_instant_whose_commands_are_lost_is_sent_again_and_the_result_is_the_
     trial, late = load_trial("frontal", duration=0.5), LateProgram()
     with Running(trial, [late], "commands") as running:
         done = running.end()
-    times = [one.nanoseconds for one in late.sent if one.topic == "/tf"]
+    times = [item.nanoseconds for item in late.sent if item.topic == "/tf"]
     assert [times.count(k) for k in range(0, 300_000_000, 50_000_000)] == [2, 1, 2, 1, 1, 1]
 
     class Prompt(LateProgram):
         def publish(self, messages):
-            for one in (one for one in messages if one.topic == "/tf"):
-                turn = 0.3 if one.nanoseconds % 150_000_000 else -0.3
+            for item in (message for message in messages if message.topic == "/tf"):
+                turn = 0.3 if item.nanoseconds % 150_000_000 else -0.3
                 self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "memory")
 
     assert run_bridge(trial, [Prompt()], 0, None, BridgeClock("free")).digest == done.digest

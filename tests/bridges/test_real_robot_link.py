@@ -31,8 +31,8 @@ def test_a_robot_that_drives_itself_tells_its_velocity():
     link = RealRobotLink(navigator, "robot", simulation, [transport])
     assert link.orders(simulation) == []
     transport.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.3}}, "naoqi")
-    found = link.orders(simulation)
-    assert found == [VelocityOrder(robot="robot", forward=0.3, source="naoqi")]
+    orders = link.orders(simulation)
+    assert orders == [VelocityOrder(robot="robot", forward=0.3, source="naoqi")]
     assert link.hold(True, "the operator") == "robot 'robot' drives itself: stop it at itself"
     link.close()
     link.close()

@@ -57,8 +57,8 @@ class Driver(MemoryTransport):
     """The commands of the robot program in memory."""
 
     def publish(self, messages):
-        for one in (one for one in messages if one.topic == "/clock"):
-            turn = 0.3 if one.nanoseconds // STEP % 7 < 4 else -0.3
+        for item in (message for message in messages if message.topic == "/clock"):
+            turn = 0.3 if item.nanoseconds // STEP % 7 < 4 else -0.3
             self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "ros1")
 
 
@@ -73,7 +73,7 @@ def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_i
     assert (tmp_path / "episode.mcap").read_bytes() == (tmp_path / "free" / "episode.mcap").read_bytes()
     assert replay(tmp_path / "episode.mcap").equal
     assert len(read_episode(tmp_path / "episode.mcap").orders) == done.steps == 80  # no command is lost
-    assert [one for one in seen["ticks"] if one] == [STEP * k for k in range(1, 81)]
+    assert [item for item in seen["ticks"] if item] == [STEP * k for k in range(1, 81)]
     assert seen["scans"] >= 39
     assert (seen["beams"] > 100, seen["frame"]) == (True, "robot/scan")
     assert seen["odometry"] >= 80
@@ -86,7 +86,7 @@ def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_i
 def test_the_tools_of_ros_see_topics_rates_and_parameters_and_call_the_services(master, tmp_path):
     trial = load_trial("frontal", duration=60.0)
     with Running(trial, [Ros1Node(master.url)]) as running:
-        names = {one.name for one in RobotInterface.of(trial).outputs}
+        names = {output.name for output in RobotInterface.of(trial).outputs}
         assert names | {"/robot/cmd_vel", "/rosout"} <= set(master.tool("rostopic", "list").split())
         hertz = master.open("rostopic", "hz", "/robot/scan")
         markers = master.tool("rostopic", "echo", "-n1", "/crowd/markers")
@@ -123,7 +123,7 @@ def test_a_bag_that_ros_records_holds_the_messages_with_their_types(master, tmp_
     recorder = master.open("rosbag", "record", "-O", str(bag), *topics)  # roscpp
     node, driver = Ros1Node(master.url), MemoryTransport([])
     with Running(TRIAL, [node, driver], "step") as running:
-        wait(lambda: all(node.wants(one) for one in topics))
+        wait(lambda: all(node.wants(topic) for topic in topics))
         for _ in range(10):  # a reading is best effort: a recorder that is slow for a moment loses some of them
             assert driver.call("step_simulation", {"steps": 8})["result"]["result"] == 1
         running.end()
@@ -181,8 +181,8 @@ def test_another_trial_changes_the_topics(master):
         assert "/robot/scan" in master.state()[0]
         answer = driver.call("load_world", {"world_resource": {"uri": "circle-crossing"}})
         assert answer["result"]["result"] == 1
-        names = {one.name for one in driver.interfaces[-1].outputs}
-        wait(lambda: {one for one, nodes in master.state()[0].items() if "/crowdbot" in nodes} == names | {"/rosout"})
+        names = {output.name for output in driver.interfaces[-1].outputs}
+        wait(lambda: {item for item, nodes in master.state()[0].items() if "/crowdbot" in nodes} == names | {"/rosout"})
         assert not node.wants("/robot/")
 
 
@@ -239,7 +239,7 @@ def test_the_file_for_rviz_shows_topics_that_exist():
     trial = load_trial("circle-crossing")
     text = files("crowdbot").joinpath("assets", "bridges", "crowdbot.rviz").read_text()
     interface = RobotInterface.of(trial)
-    topics = {one.name for one in (*interface.outputs, *interface.inputs)}
+    topics = {output.name for output in (*interface.outputs, *interface.inputs)}
     shown = set(re.findall(r"Topic: (/\S+)", text))
     assert {"/map", "/robot/scan", "/robot/odom", "/crowd/markers", "/robot/goal_pose"} == shown <= topics
     prefix = re.search(r"TF Prefix: (\S+)", text)[1]

@@ -53,8 +53,8 @@ class Driver(MemoryTransport):
     """The same commands in memory."""
 
     def publish(self, messages):
-        for one in (one for one in messages if one.topic == "/tf"):
-            turn = 0.3 if one.nanoseconds // STEP % 7 < 4 else -0.3
+        for item in (message for message in messages if message.topic == "/tf"):
+            turn = 0.3 if item.nanoseconds // STEP % 7 < 4 else -0.3
             self.inbox.receive("/robot/cmd_vel", {"linear": {"x": 0.4}, "angular": {"z": turn}}, "ros2")
 
 
@@ -71,7 +71,7 @@ def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_i
     assert replay(tmp_path / "episode.mcap").equal
     orders = read_episode(tmp_path / "episode.mcap").orders
     assert len(orders) == done.steps == 80  # no command is lost
-    assert [one for one in seen["ticks"] if one] == [STEP * k for k in range(1, 81)]
+    assert [item for item in seen["ticks"] if item] == [STEP * k for k in range(1, 81)]
     assert seen["scans"] > 0  # best effort
     assert (seen["beams"] > 100, seen["frame"]) == (True, "robot/scan")
     assert seen["odometry"] >= 80
@@ -107,7 +107,7 @@ def test_another_program_calls_the_services(tmp_path, domain):
     refused = [False, "the simulation must be paused"]
     assert answers == [refused, "done", [True, ""], [True, ""], "done", "done"]
     assert (tmp_path / "episode-2.mcap").exists()  # after the reset
-    assert node.missing_services == tuple(f"simulation_interfaces/srv/{one.kind}" for one in SERVICES.values())
+    assert node.missing_services == tuple(f"simulation_interfaces/srv/{item.kind}" for item in SERVICES.values())
 
 
 def ros_class(kind):
@@ -150,7 +150,7 @@ def test_requests_and_responses_of_simulation_interfaces_fit_their_types(monkeyp
     monkeypatch.setitem(sys.modules, "simulation_interfaces.msg", package)
     for name in ("std_msgs", "geometry_msgs"):
         importlib.import_module(f"{name}.msg")
-    kinds = [one for one in interface_store().fielddefs if one.startswith("simulation_interfaces/")]
+    kinds = [fielddef for fielddef in interface_store().fielddefs if fielddef.startswith("simulation_interfaces/")]
     for kind in kinds:
         setattr(package, kind.rpartition("/")[2], ros_class(kind))
     driver = MemoryTransport([])
@@ -206,7 +206,7 @@ def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch, domain):
     assert kept["/tf"].profile.depth == 100
     assert kept["/tf_static"].profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
     assert len(kept["/tf"].sent) >= 20
-    seen = {topic: read_transforms(one.sent[-1], package.TFMessage()) for topic, one in kept.items()}
+    seen = {topic: read_transforms(item.sent[-1], package.TFMessage()) for topic, item in kept.items()}
     assert {("map", "robot/odom"), ("robot/odom", "robot/base_link")} <= seen["/tf"]
     assert ("robot/base_link", "robot/scan") in seen["/tf_static"]
 
@@ -218,8 +218,8 @@ def read_transforms(data, message):
     store, kind = interface_store(), "geometry_msgs/msg/TransformStamped"
     found = store.deserialize_cdr(data, "tf2_msgs/msg/TFMessage").transforms
     rows = [deserialize_message(bytes(store.serialize_cdr(one, kind)), TransformStamped) for one in found]
-    assert all(one.header.stamp.sec <= 1 for one in rows)
-    return {(one.header.frame_id, one.child_frame_id) for one in rows}
+    assert all(row.header.stamp.sec <= 1 for row in rows)
+    return {(row.header.frame_id, row.child_frame_id) for row in rows}
 
 
 def test_addresses_and_domains():
@@ -238,7 +238,7 @@ def test_another_trial_changes_the_topics(domain):
         assert "/robot/scan" in node._publishers
         answer = driver.call("load_world", {"world_resource": {"uri": "circle-crossing"}})
         assert answer["result"]["result"] == 1
-        names = {one.name for one in driver.interfaces[-1].outputs}
+        names = {output.name for output in driver.interfaces[-1].outputs}
         end = time.monotonic() + 10.0
         while not set(node._publishers) <= names:
             if time.monotonic() > end:

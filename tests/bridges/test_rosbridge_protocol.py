@@ -115,7 +115,7 @@ def test_only_the_newest_message_waits_for_a_slow_client(graph):
     send(session, op="subscribe", topic="/robot/scan")
     for k in range(1000):
         graph.deliver([scan(k, float(k))])
-    assert [one["msg"]["ranges"][0] for one in taken(session)] == [999.0]
+    assert [item["msg"]["ranges"][0] for item in taken(session)] == [999.0]
     assert session.subscriptions["/robot/scan"].dropped == 999
 
 
@@ -124,7 +124,7 @@ def test_a_queue_keeps_as_many_as_the_client_asks_for(graph):
     send(session, op="subscribe", topic="/robot/scan", queue_length=3)
     for k in range(10):
         graph.deliver([scan(k, float(k))])
-    assert [one["msg"]["ranges"][0] for one in taken(session)] == [7.0, 8.0, 9.0]
+    assert [item["msg"]["ranges"][0] for item in taken(session)] == [7.0, 8.0, 9.0]
 
 
 def test_throttled_messages_keep_their_distance_in_real_time(graph):
@@ -158,18 +158,20 @@ def test_fragments_out_are_read_as_fragments_in(graph):
     graph.deliver([scan()])
     frames = taken(session)
     assert len(frames) > 4
-    assert {one["op"] for one in frames} == {"fragment"}
+    assert {frame["op"] for frame in frames} == {"fragment"}
     reader = FrameReader()
     random.Random(1).shuffle(frames)
-    whole = [found for one in frames if (found := reader.read(json.dumps(one))) is not None]
-    assert [one["op"] for one in whole] == ["publish"]
+    whole = [found for frame in frames if (found := reader.read(json.dumps(frame))) is not None]
+    assert [item["op"] for item in whole] == ["publish"]
 
 
 def test_a_command_becomes_an_order(graph):
     session = client(graph)
     send(session, op="advertise", topic="/robot/cmd_vel", type="geometry_msgs/Twist")
     send(session, op="publish", topic="/robot/cmd_vel", msg={"linear": {"x": 0.3}, "angular": {"z": 0.1}})
-    assert [(one.forward, one.turn, one.source) for one in graph.inbox.take_orders()] == [(0.3, 0.1, "rosbridge")]
+    assert [(order.forward, order.turn, order.source) for order in graph.inbox.take_orders()] == [
+        (0.3, 0.1, "rosbridge")
+    ]
     assert taken(session) == []
 
 
@@ -178,7 +180,7 @@ def test_a_late_subscriber_gets_latched_topics(graph):
     graph.deliver([make])
     session = client(graph)
     send(session, op="subscribe", topic="/map")
-    assert [one["topic"] for one in taken(session)] == ["/map"]
+    assert [item["topic"] for item in taken(session)] == ["/map"]
 
 
 def test_clients_hear_each_other(graph):
@@ -220,7 +222,7 @@ def test_a_client_offers_an_action_to_another(graph):
     send(caller, op="cancel_action_goal", id="g", action="/count")
     assert taken(server) == [{"op": "cancel_action_goal", "id": goal["id"], "action": "/count"}]
     send(server, op="action_result", id=goal["id"], action="/count", values={}, status=5, result=True)
-    assert [(one["op"], one["id"]) for one in taken(caller)] == [("action_feedback", "g"), ("action_result", "g")]
+    assert [(item["op"], item["id"]) for item in taken(caller)] == [("action_feedback", "g"), ("action_result", "g")]
 
 
 def test_the_steps_of_the_simulation_are_an_action(graph):
@@ -235,7 +237,7 @@ def test_the_steps_of_the_simulation_are_an_action(graph):
             send(session, op="cancel_action_goal", id="g", action="/crowdbot/simulate_steps")
         call.answer({"result": {"result": 1, "error_message": ""}})
     rows = taken(session)
-    assert [one["op"] for one in rows] == ["action_feedback"] * 10 + ["action_result"]
+    assert [row["op"] for row in rows] == ["action_feedback"] * 10 + ["action_result"]
     assert (rows[-1]["status"], rows[-2]["values"]) == (5, {"completed_steps": 20, "remaining_steps": 20})
 
 
@@ -256,7 +258,7 @@ def test_rosapi_answers(graph, name):
 
 
 def test_message_details_name_all_types():
-    found = {one["type"]: one for one in type_details("sensor_msgs/LaserScan")}
+    found = {detail["type"]: detail for detail in type_details("sensor_msgs/LaserScan")}
     assert {*found} == {"sensor_msgs/msg/LaserScan", "std_msgs/msg/Header", "builtin_interfaces/msg/Time"}
     row = found["sensor_msgs/msg/LaserScan"]
     assert row["fieldarraylen"][row["fieldnames"].index("ranges")] == 0
@@ -319,7 +321,7 @@ def test_the_level_of_status_messages_is_the_choice_of_the_client(graph):
     send(session, op="set_level", level="warning")
     session.status("info", "quiet")
     session.status("warning", "loud", "7")
-    assert [(one["msg"], one["id"]) for one in taken(session)] == [("loud", "7")]
+    assert [(item["msg"], item["id"]) for item in taken(session)] == [("loud", "7")]
 
 
 def test_the_list_of_allowed_topics_holds_for_all_operations():

@@ -79,8 +79,8 @@ def test_a_control_loop_of_roslibpy_loses_no_command(trial, tmp_path):
 
 
 def speeds(memory):
-    rows = [one.message for one in list(memory.sent) if one.topic == "/robot/ground_truth/odom"]
-    return [one.twist.twist.linear.x for one in rows]
+    rows = [item.message for item in list(memory.sent) if item.topic == "/robot/ground_truth/odom"]
+    return [row.twist.twist.linear.x for row in rows]
 
 
 @pytest.mark.parametrize("kills", [pytest.param(3, marks=pytest.mark.sweep), pytest.param(20, marks=pytest.mark.soak)])
@@ -199,7 +199,9 @@ def test_a_client_that_does_not_read_holds_nobody_up():
         running.run.control.state = 1
         running.run.clock = BridgeClock("free")
         running.run.port.inbox.wake()
-        waiting = [len(one._waiting) for session in server.sessions for one in session.subscriptions.values()]
+        waiting = [
+            len(subscription._waiting) for session in server.sessions for subscription in session.subscriptions.values()
+        ]
         summary = running.end(90.0)
         done.set()
         thread.join(20.0)

@@ -22,16 +22,16 @@ def test_roslib_reads_every_compression_and_uses_services_and_actions(tmp_path):
         command = ["node", "client.mjs", str(server.port)]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    assert "/robot/scan" in found["topics"]
-    assert found["details"] == ["geometry_msgs/msg/Twist", "geometry_msgs/msg/Vector3"]
-    assert found["scans"] == {
+    loads = json.loads(done.stdout)
+    assert "/robot/scan" in loads["topics"]
+    assert loads["details"] == ["geometry_msgs/msg/Twist", "geometry_msgs/msg/Vector3"]
+    assert loads["scans"] == {
         "none": ["Array", 360],
         "png": ["Array", 360],
         "cbor": ["Float32Array", 360],
         "cbor-raw": ["secs", "nsecs", "bytes"],
     }
-    assert found["x"] > -4.4
-    assert found["sum"] == 5
-    assert found["feedback"] == 20
-    assert found["result"]["result"]["result"] == 1
+    assert loads["x"] > -4.4
+    assert loads["sum"] == 5
+    assert loads["feedback"] == 20
+    assert loads["result"]["result"]["result"] == 1

@@ -35,7 +35,7 @@ async def foxglove(socket):
     while not channels:
         message = await socket.receive()
         if message.type == aiohttp.WSMsgType.TEXT:
-            channels = [one for one in message.json().get("channels", ()) if one["topic"] == "/robot/scan"]
+            channels = [item for item in message.json().get("channels", ()) if item["topic"] == "/robot/scan"]
     rows = [{"id": 1, "channelId": channels[0]["id"]}]
     await socket.send_json({"op": "subscribe", "subscriptions": rows})
     return lambda data: struct.unpack_from("<Q", data, 5)[0] if isinstance(data, bytes) and data[0] == 1 else None
@@ -65,7 +65,7 @@ def test_a_reader_of_two_scans_a_second_gets_the_newest(kind, subscribe, protoco
     with Running(endless_trial(600.0), [server, clock]):
 
         def now():
-            return max(one.nanoseconds for one in clock.sent[-20:])
+            return max(item.nanoseconds for item in clock.sent[-20:])
 
         found = asyncio.run(ages(server.port, subscribe, protocols, now))
     assert max(found) < OLDEST, found

@@ -69,7 +69,7 @@ def test_evaluate_scores_a_program_as_it_scores_a_navigator(tmp_path):
     plan = EvaluationPlan(
         [fine, dataclasses.replace(broken, name="broken")], parse_methods("own, orca"), seeds=range(2)
     )
-    rows = {(one.trial, one.method): one.runs for one in evaluate(plan, tmp_path).cells}
+    rows = {(cell.trial, cell.method): cell.runs for cell in evaluate(plan, tmp_path).cells}
     assert [row.outcome for row in rows["frontal", "own"]] == ["timeout"] * 2
     assert [row.metrics["error"] for row in rows["broken", "own"]] == [1.0, 1.0]
     assert all("its program has ended (exit status 3): no battery" in row.message for row in rows["broken", "own"])
@@ -105,8 +105,8 @@ def test_a_program_that_never_comes_or_does_not_exist():
 def test_a_late_command_misses_the_deadline_and_the_replay_repeats_it(tmp_path):
     trial = driven_trial(program("late"), deadline=0.3)
     record(trial, 0, tmp_path)
-    missed = [(time, one) for time, one in read_episode(tmp_path / "episode.mcap").orders if time == 1.0]
-    assert [type(one) for _, one in missed] == [MissedDecisionOrder]
+    missed = [(time, item) for time, item in read_episode(tmp_path / "episode.mcap").orders if time == 1.0]
+    assert [type(item) for _, item in missed] == [MissedDecisionOrder]
     assert replay(tmp_path / "episode.mcap").equal
 
 
@@ -115,7 +115,7 @@ def test_evaluate_tells_compute_times_and_missed_deadlines_of_programs_and_navig
     trial = driven_trial(program("late"), 1.5, deadline=0.3)
     result = evaluate(EvaluationPlan([trial], parse_methods("own, orca"), seeds=[0]), tmp_path)
     result.save(tmp_path / "result.json")
-    own, orca = (one.runs[0].metrics for one in result.cells)
+    own, orca = (cell.runs[0].metrics for cell in result.cells)
     assert own["missed_deadlines"] == pytest.approx(1 / 29)  # of 30 decisions, the first of which is not measured
     assert 0.0 < own["decision_time"] < 0.3 < own["decision_time_p99"]
     assert (orca["missed_deadlines"], orca["decision_time"] > 0.0) == (0.0, True)
@@ -132,10 +132,10 @@ def test_a_program_has_no_power_over_the_trial():
     assert {type(order) for _, order in episode.orders} == {VelocityOrder}
     trial = load_trial("frontal")
     honest, all_of_it = StackPort(trial, [], ["robot"]).interface, StackPort(trial, [], ["robot"], truth=True).interface
-    names = {one.name for one in honest.outputs}
+    names = {output.name for output in honest.outputs}
     assert {"/clock", "/tf", "/map", "/robot/scan", "/robot/odom", "/robot/goal"} <= names
     assert not names & {"/people", "/robot/ground_truth/odom", "/robot/scan/reading", "/crowdbot/contacts"}
-    assert {"/people", "/robot/ground_truth/odom"} <= {one.name for one in all_of_it.outputs}
+    assert {"/people", "/robot/ground_truth/odom"} <= {output.name for output in all_of_it.outputs}
 
 
 @pytest.mark.live

@@ -30,9 +30,9 @@ class Program(MemoryTransport):
 
     def publish(self, messages):
         super().publish(messages)
-        for one in (one for one in messages if one.topic == "/tf"):
-            copies = 1 + self.rng.randrange(4) * (self.faulty and one.nanoseconds > 0)
-            self.waiting += [answer(one.nanoseconds)] * copies
+        for item in (message for message in messages if message.topic == "/tf"):
+            copies = 1 + self.rng.randrange(4) * (self.faulty and item.nanoseconds > 0)
+            self.waiting += [answer(item.nanoseconds)] * copies
 
     def poll(self):
         for _ in range(self.rng.randint(0, 3) if self.faulty else 1):
@@ -66,7 +66,7 @@ def inbox():
 
 
 def forward(inbox):
-    return [one.forward for one in inbox.take_orders()]
+    return [order.forward for order in inbox.take_orders()]
 
 
 def test_the_first_command_with_the_stamp_of_the_instant_counts(inbox):

@@ -39,7 +39,7 @@ class Client:
             found += part
         parts = found.decode().split(";")
         assert parts.pop() == "@"
-        rows = [one.split("=", 1) for one in parts]
+        rows = [part.split("=", 1) for part in parts]
         numbers = {value.split("#", 1)[0] for _, value in rows}
         assert len(numbers) == 1
         return {topic: value.split("#", 1)[1] for topic, value in rows}
@@ -111,8 +111,8 @@ def test_the_picture_of_a_camera_is_a_jpeg_file_as_the_clients_read_it():
         first = client.ask("clock=0.2;vel_cmd=0.5 0;sim_control=i;")
         later = client.ask("clock=1.0;vel_cmd=0.5 0;sim_control=i;")
         client.socket.close()
-    pictures = [Image.open(io.BytesIO(base64.b64decode(one["camera"]))) for one in (first, later)]
-    assert [(one.format, one.size) for one in pictures] == [("JPEG", (32, 24))] * 2
+    pictures = [Image.open(io.BytesIO(base64.b64decode(item["camera"]))) for item in (first, later)]
+    assert [(picture.format, picture.size) for picture in pictures] == [("JPEG", (32, 24))] * 2
     assert pictures[0].tobytes() != pictures[1].tobytes(), "the robot has moved"
 
 
@@ -128,11 +128,11 @@ def test_a_robot_without_a_camera_sends_what_the_challenge_sent_before_the_first
 @given(st.text(max_size=60))
 def test_a_request_is_read_or_refused_with_a_sentence(text):
     try:
-        found = read_request(text)
+        request = read_request(text)
     except InputError as error:
         problem = str(error)
     else:
-        problem = "" if found.control in "inprfls" else found.control
+        problem = "" if request.control in "inprfls" else request.control
     assert problem == "" or len(problem) > 10
 
 

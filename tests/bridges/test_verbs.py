@@ -27,7 +27,7 @@ def pose(x, y, frame="map"):
 
 def test_every_service_is_a_verb_and_its_response_has_the_type_of_the_standard(trial):
     transport = MemoryTransport()
-    names = [one.name for one in RobotInterface.of(trial).services]
+    names = [service.name for service in RobotInterface.of(trial).services]
     assert names == [f"/crowdbot/{name}" for name in SERVICES]
     assert all(callable(getattr(Verbs, name)) for name in SERVICES)
     requests = {
@@ -90,7 +90,7 @@ def test_people_robots_and_props_are_added_moved_and_removed(tmp_path):
         assert transport.call("get_entities", {"filters": {"bounds": near}})["entities"] == ["bot"]
         box = {"type": 1, "points": [{"x": 2.5, "y": -0.5}, {"x": 1.5, "y": -3.0}]}
         assert transport.call("get_entities", {"filters": {"bounds": box}})["entities"] == ["bot"]
-        assert "/bot/cmd_vel" in {one.name for one in transport.interfaces[-1].inputs}
+        assert "/bot/cmd_vel" in {input_topic.name for input_topic in transport.interfaces[-1].inputs}
         transport.inbox.receive("/bot/cmd_vel", {"linear": {"x": 0.3}}, "test")
         assert code(transport.call("set_entity_state", {"entity": "person_2", "state": pose(1.0, 1.2)})) == OK
         step(4)
@@ -170,7 +170,7 @@ def test_the_fields_are_those_of_version_2_1_0_of_the_standard(trial):
     assert not {21, 22} & set(features), "time and state have no reset of their own"
     assert code(time) == code(state) == 0
     assert {40, 44, 45, 50} <= set(features), "worlds, available worlds and several entities at once"
-    assert {"person", "robot/pepper"} <= {one["entity_resource"]["uri"] for one in rows}
+    assert {"person", "robot/pepper"} <= {row["entity_resource"]["uri"] for row in rows}
 
 
 def test_a_reset_begins_the_same_run_again_in_another_file(trial, tmp_path):
@@ -186,7 +186,7 @@ def test_a_reset_begins_the_same_run_again_in_another_file(trial, tmp_path):
     files = [tmp_path / name for name in ("episode.mcap", "episode-2.mcap", "episode-3.mcap")]
     assert len({read_episode(path).digest for path in files}) == 1
     assert len({path.read_bytes() for path in files}) == 1
-    times = [one.nanoseconds for one in transport.sent if one.topic == "/clock"]
+    times = [item.nanoseconds for item in transport.sent if item.topic == "/clock"]
     assert times.count(0) == 3
 
 
@@ -257,7 +257,7 @@ def test_steps_need_a_paused_simulation(trial):
         assert code(transport.call("set_simulation_state", {"state": {"state": 2}})) == OK
         sent = len(transport.sent)
         assert code(transport.call("step_simulation", {"steps": 2})) == OK
-        assert [one.topic for one in transport.sent[sent:]].count("/clock") == 2
+        assert [item.topic for item in transport.sent[sent:]].count("/clock") == 2
 
 
 def test_steps_beyond_the_end_are_answered(trial):

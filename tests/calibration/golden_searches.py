@@ -64,8 +64,8 @@ def compute() -> dict[str, np.ndarray]:
         past, seed=2, start=fit
     )
     shared = Calibrator(Shy(), "inter-pedestrian", Greedy(), budget=40, shared=True).fit([past, past[:2]], seed=2)
-    for name, one in (("fit", fit), ("prior", drawn), ("shared", shared)):
-        arrays |= {f"{name}.values": one.values, f"{name}.cost": one.cost, f"{name}.given": one.given_cost}
+    for name, item in (("fit", fit), ("prior", drawn), ("shared", shared)):
+        arrays |= {f"{name}.values": item.values, f"{name}.cost": item.cost, f"{name}.given": item.given_cost}
     arrays["prior.covariance"] = prior.covariance
     arrays["fit.predicted"] = fit.predict(past, 4).position
     return arrays

@@ -95,9 +95,9 @@ def test_pieces_that_fit_the_memory_change_nothing(past: Windows, monkeypatch: p
     for agents in (1, 6 * 8 * 3):
         monkeypatch.setattr(module, "AGENTS_AT_ONCE", agents)
         chunks = [scheme.fit(past) for scheme in (shared(20), each(20))]
-        for chunk, one in zip(chunks, whole, strict=True):
-            np.testing.assert_allclose(chunk.history, one.history, rtol=1e-12)
-            assert np.array_equal(chunk.values, one.values)
+        for chunk, item in zip(chunks, whole, strict=True):
+            np.testing.assert_allclose(chunk.history, item.history, rtol=1e-12)
+            assert np.array_equal(chunk.values, item.values)
 
 
 def test_several_recordings_are_fitted_together(past: Windows) -> None:
@@ -167,7 +167,7 @@ def test_a_prior_draws_people_towards_the_population(past: Windows, tmp_path: Pa
     fit = each(200).fit(past, seed=1)
     prior = PopulationPrior.from_fits(fit, strength=0.5)
     drawn = each(200, prior=prior).fit(past, seed=1)
-    spread = [np.std(one.values.reshape(-1, 3), axis=0) for one in (drawn, fit)]
+    spread = [np.std(item.values.reshape(-1, 3), axis=0) for item in (drawn, fit)]
     assert np.all(spread[0] < spread[1])
     prior.save(tmp_path / "prior.json")
     again = PopulationPrior.load(tmp_path / "prior.json")

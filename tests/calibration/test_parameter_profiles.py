@@ -51,15 +51,15 @@ def test_data_identify_what_has_an_effect(profiled):
 
 def test_the_calibrated_value_is_on_the_grid_and_the_bounds_too(profiled):
     _, fit, _, profiles = profiled
-    for d, one in enumerate(profiles):
-        assert one.best == fit.values[0, 0, d]
-        assert one.best in one.values
-        assert np.all(np.diff(one.values) > 0.0)
-        assert (one.values[0], one.values[-1]) == (fit.space.low[d], fit.space.high[d])
-        assert one.cost[one.values == one.best][0] == pytest.approx(float(fit.cost[0]))
-        assert np.all(one.low <= one.high)
-        assert one.bootstrap[0] <= one.bootstrap[1]
-        assert one.as_dict()["identified"] == one.identified
+    for d, profile in enumerate(profiles):
+        assert profile.best == fit.values[0, 0, d]
+        assert profile.best in profile.values
+        assert np.all(np.diff(profile.values) > 0.0)
+        assert (profile.values[0], profile.values[-1]) == (fit.space.low[d], fit.space.high[d])
+        assert profile.cost[profile.values == profile.best][0] == pytest.approx(float(fit.cost[0]))
+        assert np.all(profile.low <= profile.high)
+        assert profile.bootstrap[0] <= profile.bootstrap[1]
+        assert profile.as_dict()["identified"] == profile.identified
 
 
 def test_costs_of_people_have_the_mean_of_the_fit(profiled):

@@ -141,10 +141,10 @@ def test_windows_with_and_without_people_are_predicted_together() -> None:
     present = past.present.copy()
     present[1] = False
     past = dataclasses.replace(past, present=present, position=np.where(present[..., None], past.position, 0.0))
-    found = Rollout(Shy(), CurrentDirection()).predict_positions(past, 3)
-    assert found.shape == (2, 3, 2, 2)
-    np.testing.assert_allclose(found[0, :, 0], [[2.0, 0.0], [2.5, 0.0], [3.0, 0.0]], atol=1e-9)
-    assert np.all(found[1] == 0.0)
+    predict_positions = Rollout(Shy(), CurrentDirection()).predict_positions(past, 3)
+    assert predict_positions.shape == (2, 3, 2, 2)
+    np.testing.assert_allclose(predict_positions[0, :, 0], [[2.0, 0.0], [2.5, 0.0], [3.0, 0.0]], atol=1e-9)
+    assert np.all(predict_positions[1] == 0.0)
     nobody = dataclasses.replace(past, present=np.zeros_like(present))
     assert Rollout(Shy(), CurrentDirection()).predict_positions(nobody, 3).shape == (2, 3, 2, 2)
 

@@ -45,10 +45,10 @@ def whole(recording: Recording) -> Fit:
     return calibration.merge(list(calibration.run()))
 
 
-def assert_same(one: Fit, other: Fit) -> None:
+def assert_same(fit: Fit, other: Fit) -> None:
     for name in ARRAYS:
-        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
-    assert (one.scheme, one.windows, one.persons) == (other.scheme, other.windows, other.persons)
+        np.testing.assert_array_equal(getattr(fit, name), getattr(other, name), err_msg=name)
+    assert (fit.scheme, fit.windows, fit.persons) == (other.scheme, other.windows, other.persons)
 
 
 def test_chunks_cover_the_recording_in_order(recording: Recording) -> None:

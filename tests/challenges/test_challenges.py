@@ -120,7 +120,7 @@ def test_a_submission_is_run_packed_verified_and_ranked(
     held = load_entry(tmp_path / "held" / "entry.json")
     assert (held.seeds, len(held.runs["frontal"])) == ("held back", 3)
     done = challenge_command(
-        "board", file, *(tmp_path / one / "entry.json" for one in ("again", "held")), "--out", tmp_path / "b.html"
+        "board", file, *(tmp_path / item / "entry.json" for item in ("again", "held")), "--out", tmp_path / "b.html"
     )
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "b.html").read_text()
@@ -213,7 +213,7 @@ def test_the_board_orders_by_the_rank(folder: Path, tmp_path: Path) -> None:
         return ChallengeEntry("small", challenge.hash, name, name, "", "public", {"frontal": rows})
 
     entries = [entry("slow", 1.0, 9.0), entry("bad", 0.0, float("nan")), entry("fast", 1.0, 5.0)]
-    assert [one.submission for one in sort_entries(challenge, entries)] == ["fast", "slow", "bad"]
+    assert [entry.submission for entry in sort_entries(challenge, entries)] == ["fast", "slow", "bad"]
     with pytest.raises(InputError, match="'slow' with public seeds is there twice"):
         write_board(challenge, [entries[0], entries[0]], tmp_path / "b.html")
     with pytest.raises(InputError, match="a board needs at least one entry"):

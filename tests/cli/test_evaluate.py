@@ -68,7 +68,7 @@ def test_the_command_of_the_worst_runs_plays_them(capsys: pytest.CaptureFixture[
     words = [*QUICK, "--navigators", "straight, orca safety=0.2", "--sweep", "robot.visible=true,false"]
     rows = _json(capsys, *words)["cells"]
     assert [len(row["worst"]["runs"]) for row in rows] == [3] * 4
-    row = next(one for one in rows if one["navigator"] != "straight" and "false" in one["trial"])
+    row = next(row for row in rows if row["navigator"] != "straight" and "false" in row["trial"])
     program, *again = shlex.split(row["worst"]["command"])
     assert program == "crowdbot"
     seeds = [run["seed"] for run in row["worst"]["runs"]]

@@ -38,7 +38,7 @@ def test_agents_of_hunavsim_become_a_trial(tmp_path, capsys):
     assert main(["new", "trial", str(out), "--import", str(tmp_path / "agents.yaml")]) == 0
     assert "the robot is not in the file" in capsys.readouterr().out
     (ann,) = load_trial(str(out)).agents
-    assert [one.type for one in ann.reactions] == ["scared"]
+    assert [reaction.type for reaction in ann.reactions] == ["scared"]
 
 
 def test_a_wrong_layer_is_told(tmp_path, capsys):

@@ -44,16 +44,16 @@ def write(folder, radius):
 
 def test_json_tells_every_value_and_where_it_is_from(cart, capsys):
     assert main(["new", "robot", "cart.urdf", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    rows = {row["what"]: row for row in found["table"]}
-    assert (found["folder"], found["trial"], found["kind"]) == ("cart", "cart-hall.xml", "differential")
-    assert found["confirmed"] is False
+    loads = json.loads(capsys.readouterr().out)
+    rows = {row["what"]: row for row in loads["table"]}
+    assert (loads["folder"], loads["trial"], loads["kind"]) == ("cart", "cart-hall.xml", "differential")
+    assert loads["confirmed"] is False
     assert rows["max-speed"]["status"] == "guess"
     assert rows["max-turn-rate"]["status"] == "derived"
     assert rows["mass of tower"]["status"] == "guess"
-    assert found["mass"] == pytest.approx(11.1)
-    assert any("'tower' moves but neither it nor a link fixed to it has a mass" in text for text in found["remarks"])
-    assert json.loads((cart / "cart" / "import.json").read_text())["table"] == found["table"]
+    assert loads["mass"] == pytest.approx(11.1)
+    assert any("'tower' moves but neither it nor a link fixed to it has a mass" in text for text in loads["remarks"])
+    assert json.loads((cart / "cart" / "import.json").read_text())["table"] == loads["table"]
 
 
 def test_values_are_changed_by_set(cart, capsys):

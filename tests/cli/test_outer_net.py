@@ -60,13 +60,13 @@ def test_an_unexpected_error_is_one_sentence_with_a_trace_in_a_file(tmp_path):
     done = run([sys.executable, "-c", program], environment={"TMPDIR": str(tmp_path), "CROWDBOT_DEBUG": ""})
     assert done.returncode == 1
     assert done.stdout == "half the output\n"
-    found = re.fullmatch(
+    match = re.fullmatch(
         r"crowdbot: ZeroDivisionError: nothing to divide \(<string>, line \d+\); this is a bug in crowdbot or in your"
         r" code; the traceback is in (.+)\n",
         done.stderr,
     )
-    assert found, done.stderr
-    trace = Path(found.group(1))
+    assert match, done.stderr
+    trace = Path(match.group(1))
     assert trace.parent == tmp_path
     assert "Traceback (most recent call last)" in trace.read_text(encoding="utf-8")
     assert "ZeroDivisionError: nothing\nto divide" in trace.read_text(encoding="utf-8")

@@ -13,11 +13,11 @@ def test_a_trial_is_tracked_with_intervals_and_a_plot(tmp_path, capsys):
     plot = tmp_path / "tracks.png"
     words = ["track", "crossing-flows", "--duration", "4", "--starts", "2", *TRACKERS, "--plot", str(plot), "--json"]
     assert main(words) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["seeds"] == [1, 2]
-    assert found["sensor"] == "robot/scan"
-    assert list(found["scores"]) == TRACKERS[1:]
-    for scores in found["scores"].values():
+    loads = json.loads(capsys.readouterr().out)
+    assert loads["seeds"] == [1, 2]
+    assert loads["sensor"] == "robot/scan"
+    assert list(loads["scores"]) == TRACKERS[1:]
+    for scores in loads["scores"].values():
         assert scores["mota"]["value"] > 0.8
         assert scores["mota"]["runs"] == 2
         assert scores["mota"]["low"] <= scores["mota"]["value"] <= scores["mota"]["high"]
@@ -41,8 +41,8 @@ def test_the_map_removes_false_tracks(capsys):
     shares = []
     for extra in ([], ["--no-map"]):
         assert main([*words, *extra]) == 0
-        found = json.loads(capsys.readouterr().out)
-        shares.append(found["scores"]["global-nearest-neighbor"]["false_tracks"]["value"])
+        loads = json.loads(capsys.readouterr().out)
+        shares.append(loads["scores"]["global-nearest-neighbor"]["false_tracks"]["value"])
     assert shares[0] < shares[1]
 
 

@@ -65,7 +65,7 @@ def folder(tmp_path):
         foot, head, middle = (MOUNT / away, (MOUNT - 1.7) / away, -y / away)
         image = np.full((HEIGHT, WIDTH, 3), 200, dtype=np.uint8)
         left, right = (round(FOCAL * (middle + side / away) + 159.5) for side in (-0.25, 0.25))
-        top, low = (round(FOCAL * one + 119.5) for one in (head, foot))
+        top, low = (round(FOCAL * item + 119.5) for item in (head, foot))
         cv2.rectangle(image, (left, top), (right, low), (30, 30, 220), -1)
         video.write(image)
     video.release()
@@ -81,12 +81,12 @@ def test_people_of_a_video_are_tracked_and_predicted_in_metres(folder, capsys):
     plot = folder / "map.png"
     files = ["--out", f"{folder}/found", "--plot", str(plot), "--truth", f"{folder}/truth.csv"]
     assert main(words(folder, *files, "--steps", "4", "--json")) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["frames"] == FRAMES
-    assert found["tracks"] == 1
-    assert found["scores"]["motp"] < 0.25
-    assert found["scores"]["mota"] > 0.7
-    assert found["scores"]["error_at_1.6_s"] < 0.8
+    loads = json.loads(capsys.readouterr().out)
+    assert loads["frames"] == FRAMES
+    assert loads["tracks"] == 1
+    assert loads["scores"]["motp"] < 0.25
+    assert loads["scores"]["mota"] > 0.7
+    assert loads["scores"]["error_at_1.6_s"] < 0.8
     assert plot.stat().st_size > 20_000
     with (folder / "found" / "tracks.csv").open() as lines:
         rows = list(csv.DictReader(lines))

@@ -140,7 +140,7 @@ def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
     assert "social-ways: street.txt has time steps of 1 s; the weights require 0.4 s: resample with --step 0.4" in err
     assert "UserWarning" not in err
     status, out, _ = said([*words, "--json"], capsys)
-    assert [len(one["notes"]) for one in json.loads(out)["results"]] == [1, 1]
+    assert [len(item["notes"]) for item in json.loads(out)["results"]] == [1, 1]
 
 
 @pytest.mark.parametrize(

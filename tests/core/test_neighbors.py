@@ -169,8 +169,8 @@ def test_numbers_and_arrays_mean_the_same():
     position = np.random.default_rng(0).uniform(0.0, 4.0, (3, 9, 2))
     whole = nearest(position, 2.0, 3)
     spread = nearest(position, np.full((3, 9), 2.0), np.full(9, 3.0), np.ones((3, 1), bool), np.ones((3, 9), bool))
-    for one, other in zip(whole, spread, strict=True):
-        np.testing.assert_array_equal(one, other)
+    for item, other in zip(whole, spread, strict=True):
+        np.testing.assert_array_equal(item, other)
 
 
 def test_dense_arrays_are_copied_only_if_necessary():

@@ -214,11 +214,11 @@ def test_the_step_of_the_kernel_has_the_bits_of_numpy(seed, envs, agents, dt):
     )
     wild = np.where(scene.active[..., None], scene.position, np.nan)
     velocity = rng.normal(0.0, 0.06, shape)
-    for one in (scene, scene.replace(position=wild)):
+    for item in (scene, scene.replace(position=wild)):
         for chosen in (velocity, velocity[..., ::-1], velocity[:1, :1], np.float64(0.25)):
-            later = one.advance(chosen, dt)
+            later = item.advance(chosen, dt)
             for found, expected in zip(
-                (later.position, later.velocity, later.heading), _advance_with_numpy(one, chosen, dt), strict=True
+                (later.position, later.velocity, later.heading), _advance_with_numpy(item, chosen, dt), strict=True
             ):
                 assert found.tobytes() == np.ascontiguousarray(expected).tobytes()
 
@@ -235,14 +235,14 @@ def test_arrays_of_a_step_are_dense_whatever_the_scene_was_made_of():
     rng = np.random.default_rng(3)
     scene = Scene.of(rng.normal(size=(2, 5, 2)), rng.normal(size=(2, 5, 2)), goal=rng.normal(size=(2, 5, 2)))
     later = scene.advance(scene.velocity, 0.1)
-    for one in (scene, later, later.replace(radius=np.asfortranarray(np.full((2, 5), 0.3))), later.environment(1)):
-        arrays = one.step_arrays()
-        shapes = [(*one.shape, 2)] * 2 + [one.shape] * 2 + [(*one.shape, 2)] + [one.shape] * 4
+    for item in (scene, later, later.replace(radius=np.asfortranarray(np.full((2, 5), 0.3))), later.environment(1)):
+        arrays = item.step_arrays()
+        shapes = [(*item.shape, 2)] * 2 + [item.shape] * 2 + [(*item.shape, 2)] + [item.shape] * 4
         assert [array.shape for array in arrays] == shapes
         assert all(array.flags.carray for array in arrays)
         names = ("position", "velocity", "radius", "max_speed", "goal", "preferred_speed", "active", "visible")
         for name, array in zip((*names, "external"), arrays, strict=True):
-            assert np.array_equal(array, getattr(one, name))
+            assert np.array_equal(array, getattr(item, name))
     wish = later.replace(preferred_velocity=np.ones((2, 5, 2)))
     assert np.array_equal(wish.step_arrays()[4], np.ones((2, 5, 2)))
 

@@ -31,7 +31,7 @@ def test_every_instant_is_due_at_the_first_tick_at_or_after_it(step: int, data: 
     assert [tick for tick in ticks if schedule.is_due(tick)] == sorted(wanted & set(ticks))
     assert [schedule.index(tick) for tick in ticks] == [math.floor(Fraction(tick * step, period)) for tick in ticks]
     for tick in (begin, begin + 1, begin + 7):
-        assert schedule.next_due(tick) == min(one for one in exact_ticks(step, period, tick + 60) if one >= tick)
+        assert schedule.next_due(tick) == min(item for item in exact_ticks(step, period, tick + 60) if item >= tick)
 
 
 @given(STEPS, st.data())

@@ -19,15 +19,15 @@ def no_lists():
 @pytest.fixture
 def searches(monkeypatch):
     """Return a list to which every search in a grid adds the number of its rows."""
-    found: list[int] = []
+    result: list[int] = []
     whole = search.search_in_grid
 
     def counted(seekers, seen, *arguments):
-        found.append(len(seen))
+        result.append(len(seen))
         return whole(seekers, seen, *arguments)
 
     monkeypatch.setattr(search, "search_in_grid", counted)
-    return found
+    return result
 
 
 def crowd(seed, E, A, density=0.7):

@@ -40,9 +40,9 @@ def test_written_trees_are_read_back() -> None:
     tree = Element("a", {"text": 'one "two" & <three>\n\t\r'}, [Element("b", {"n": "1"}, [Element("c")])])
     text = format_xml(tree)
     assert text.splitlines()[2:] == ['  <b n="1">', "    <c/>", "  </b>", "</a>"]
-    found = parse_xml(text.encode(), "t.xml")
-    assert (found.attributes, found.children[0].attributes) == (tree.attributes, {"n": "1"})
-    assert [child.tag for child in found.children[0].children] == ["c"]
+    xml = parse_xml(text.encode(), "t.xml")
+    assert (xml.attributes, xml.children[0].attributes) == (tree.attributes, {"n": "1"})
+    assert [child.tag for child in xml.children[0].children] == ["c"]
 
 
 def test_the_encoding_can_be_given() -> None:

@@ -31,9 +31,9 @@ from crowdbot.core import InputError, parse_yaml
     ],
 )
 def test_forms_of_yaml(text: str, value: Any) -> None:
-    found = parse_yaml(text, "m.yaml")
-    assert found == value
-    assert repr(found) == repr(value)  # types, too: True == 1
+    yaml = parse_yaml(text, "m.yaml")
+    assert yaml == value
+    assert repr(yaml) == repr(value)  # types, too: True == 1
 
 
 LAUGHS = "a0: &a0 [1, 1]\n" + "".join(f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * 10)}]\n" for k in range(1, 8))

@@ -47,7 +47,7 @@ class Walker:
 
 def walkers() -> list[Walker]:
     """Return the people, by id from 1."""
-    found = []
+    result = []
     for number in range(PEOPLE):
         place, family = number % 3, number // 3
         begin, end = 0.8 * number, 0.8 * number + 12.0
@@ -58,8 +58,8 @@ def walkers() -> list[Walker]:
             start, velocity = (7.0, 1.5 + 0.8 * place), (-1.2 - 0.1 * place, 0.05)
         else:
             start, velocity = (-2.0 + 1.5 * place, -7.0), (0.1, 1.3)
-        found.append(Walker(number + 1, begin, end, start, velocity))
-    return found
+        result.append(Walker(number + 1, begin, end, start, velocity))
+    return result
 
 
 def rows(fps: float, step: int = 1) -> list[tuple[int, int, float, float]]:
@@ -292,7 +292,7 @@ def parquet(path: Path) -> None:
     import pyarrow.parquet as pq
 
     frame, id, x, y = zip(*rows(25.0, 10), strict=True)
-    columns = {"id": id, "frame": frame, "time": [one / 25.0 for one in frame], "x": x, "y": y}
+    columns = {"id": id, "frame": frame, "time": [item / 25.0 for item in frame], "x": x, "y": y}
     pq.write_table(pa.table({name: list(column) for name, column in columns.items()}), path)
 
 
@@ -486,6 +486,6 @@ SYNTHETIC = {
 
 def write_all(folder: Path) -> dict[str, Path]:
     """Write every synthetic recording and return the paths by file name."""
-    for name, one in SYNTHETIC.items():
-        one.write(folder / name)
+    for name, item in SYNTHETIC.items():
+        item.write(folder / name)
     return {name: folder / name for name in SYNTHETIC}

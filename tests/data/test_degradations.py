@@ -241,29 +241,29 @@ def _slow_switches(tracks, met, probability):
     drawn = stream(5).random(len(met))
     names = {id: id for id in tracks.ids.tolist()}
     waiting = [pair for pair, u in zip(met, drawn, strict=True) if u < probability]
-    found = []
+    slow_switches = []
     for frame, id in zip(tracks.frame.tolist(), tracks.id.tolist(), strict=True):
         while waiting and waiting[0].frame <= frame:
             _, one, other = waiting.pop(0)
             names[one], names[other] = names[other], names[one]
-        found.append(names[id])
-    return found
+        slow_switches.append(names[id])
+    return slow_switches
 
 
 def test_encounters_are_stretches_as_a_slow_twin_finds_them():
     tracks = _crowd(seed=3)
     frames = np.unique(tracks.frame)
     slow = []
-    for one in range(1, 12):
-        for other in range(one + 1, 12):
+    for item in range(1, 12):
+        for other in range(item + 1, 12):
             stretch = []
             for frame in [*frames, None]:
                 here = dict(_at(tracks, frame)) if frame is not None else {}
-                away = np.hypot(*(here[one] - here[other])) if one in here and other in here else np.inf
+                away = np.hypot(*(here[item] - here[other])) if item in here and other in here else np.inf
                 if away < 1.0:
                     stretch.append((away, int(frame)))
                 elif stretch:
-                    slow.append((min(stretch)[1], one, other))
+                    slow.append((min(stretch)[1], item, other))
                     stretch = []
     assert encounters(tracks, 1.0) == sorted(slow)
     assert len(slow) > 10

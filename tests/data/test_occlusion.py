@@ -50,7 +50,7 @@ def test_walls_and_reach():
 
 def _slow(eye, place, radius, reach, walls):
     """Shapes: the line of sight against discs and walls, one by one."""
-    found = []
+    slow = []
     for number, target in enumerate(place):
         sight = LineString([eye, target])
         lost = sight.length > reach
@@ -61,8 +61,8 @@ def _slow(eye, place, radius, reach, walls):
                 along = LineString([eye, eye + 100.0 * (target - eye)])  # a body beside the person still hides
                 lost |= along.distance(Point(centre)) < radius
         lost |= any(sight.intersects(LineString([wall[:2], wall[2:]])) for wall in walls)
-        found.append(bool(lost))
-    return found
+        slow.append(bool(lost))
+    return slow
 
 
 @pytest.mark.parametrize("seed", range(20))

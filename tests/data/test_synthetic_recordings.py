@@ -8,7 +8,7 @@ from crowdbot.core import DataError
 from crowdbot.data import FORMATS, RowRateError, load
 from crowdbot.data.source import Source
 
-ON_FRAMES = [name for name, one in SYNTHETIC.items() if one.step > 1]
+ON_FRAMES = [name for name, item in SYNTHETIC.items() if item.step > 1]
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def loaded(files, name, **options):
 
 
 def test_every_format_has_a_synthetic_recording():
-    assert {one.format for one in SYNTHETIC.values()} == set(FORMATS)
+    assert {item.format for item in SYNTHETIC.values()} == set(FORMATS)
 
 
 @pytest.mark.parametrize("name", SYNTHETIC)

@@ -124,7 +124,7 @@ def test_each_of_two_crowds_that_people_follow_has_a_sentence(tmp_path: Path) ->
     people = f'<spawner count="2" {PERSON}/><spawner count="1" crowd="new" {PERSON}/>'
     people += f'<spawner count="0" crowd="nobody" {PERSON}/>'
     both = trial(crowds, people)
-    assert [(one.crowd, one.contacts) for one in trial_realism(both)] == [
+    assert [(item.crowd, item.contacts) for item in trial_realism(both)] == [
         ("calm (people)", "alike"),
         ("new (boids)", "unknown"),
     ]
@@ -160,7 +160,7 @@ def test_people_who_do_not_see_the_robot_are_not_compared(tmp_path: Path) -> Non
     assert "Around a golf cart, recorded people keep" not in text
     assert realism_notice(trial_realism(hidden)) == "Contacts with these people are likelier than with real people."
     ghost = trial('<crowd type="people"/>', robot=ROBOT.replace("<robot ", '<robot ghost="true" '))
-    assert [one.contacts for one in trial_realism(ghost)] == ["unknown"]
+    assert [item.contacts for item in trial_realism(ghost)] == ["unknown"]
 
 
 def test_only_the_robot_that_is_evaluated_counts() -> None:
@@ -182,7 +182,7 @@ def test_only_the_robot_that_is_evaluated_counts() -> None:
     ],
 )
 def test_people_who_differ_from_their_crowd_are_named(people: str, crowd: str, words: str) -> None:
-    found = {one.crowd: one for one in trial_realism(trial('<crowd type="people"/>', people))}
+    found = {item.crowd: item for item in trial_realism(trial('<crowd type="people"/>', people))}
     assert found[crowd].contacts == "unknown"
     assert words in found[crowd].sentence
     assert ("people" in found) == (crowd != "people who stand")

@@ -20,10 +20,10 @@ def sweeps():
     return [
         [
             score
-            for scores in sweep_degradations([tracks], [one], predictors, task=DegradedTask(draws=2))
+            for scores in sweep_degradations([tracks], [item], predictors, task=DegradedTask(draws=2))
             for score in scores
         ]
-        for one in (GaussianNoise(), MissingFrames())
+        for item in (GaussianNoise(), MissingFrames())
     ]
 
 

@@ -36,7 +36,7 @@ def table(value, seeds=6):
 
 
 def effects(result, confidence=0.95):
-    return {one.levels: one for one in factor_effects(result, "m", confidence)}
+    return {effect.levels: effect for effect in factor_effects(result, "m", confidence)}
 
 
 def test_an_additive_table_has_main_effects_only():
@@ -103,7 +103,7 @@ def test_a_sweep_is_evaluated_saved_and_reported(tmp_path):
         factors={trial.name: ("frontal", levels) for trial, levels in rows},
     )  # fmt: skip
     result = evaluate(plan)
-    speeds = {one.levels: one.mean.value for one in factor_effects(result, "max_speed")}
+    speeds = {effect.levels: effect.mean.value for effect in factor_effects(result, "max_speed")}
     assert speeds["0.5",] == pytest.approx(0.5, abs=0.02)
     assert speeds["1",] == pytest.approx(1.0, abs=0.02)
     result.save(tmp_path / "result.json")

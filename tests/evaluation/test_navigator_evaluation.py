@@ -166,10 +166,10 @@ def test_a_changed_navigator_is_run_again(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_seed_with_which_the_trial_is_impossible_is_invalid_and_counts_nowhere() -> None:
     rows = (RunRow(0, "success", "d", {"success": 1.0}), RunRow(1, "invalid", message="no room"))
-    found = EvaluationResult((CellResult("hall", "orca", "", "", {}, rows),))
-    assert found.cells[0].estimate("success-rate")[::3] == (1.0, 1)
-    assert [row.seed for _, row in found.invalid] == [1]
-    assert not found.failures
+    evaluation_result = EvaluationResult((CellResult("hall", "orca", "", "", {}, rows),))
+    assert evaluation_result.cells[0].estimate("success-rate")[::3] == (1.0, 1)
+    assert [row.seed for _, row in evaluation_result.invalid] == [1]
+    assert not evaluation_result.failures
 
 
 def test_a_result_is_the_same_after_writing_and_reading(result: EvaluationResult, tmp_path: Path) -> None:
@@ -178,9 +178,9 @@ def test_a_result_is_the_same_after_writing_and_reading(result: EvaluationResult
     assert again.provenance["crowdbot"] == result.provenance["crowdbot"]
     for old, new in zip(result.cells, again.cells, strict=True):
         assert dataclasses.replace(old, runs=()) == dataclasses.replace(new, runs=())
-        for one, two in zip(old.runs, new.runs, strict=True):
-            np.testing.assert_array_equal(list(one.metrics.values()), list(two.metrics.values()))
-            assert (one.seed, one.outcome, one.digest) == (two.seed, two.outcome, two.digest)
+        for run, two in zip(old.runs, new.runs, strict=True):
+            np.testing.assert_array_equal(list(run.metrics.values()), list(two.metrics.values()))
+            assert (run.seed, run.outcome, run.digest) == (two.seed, two.outcome, two.digest)
 
 
 @pytest.mark.parametrize(
@@ -202,7 +202,7 @@ def test_files_that_are_no_result_are_refused(text: str, words: str, tmp_path: P
 
 
 def test_comparisons_are_paired_by_seed(result: EvaluationResult) -> None:
-    found = {one.metric: one for one in result.compare(["collision", "min_clearance", "no_such_metric"])}
+    found = {item.metric: item for item in result.compare(["collision", "min_clearance", "no_such_metric"])}
     assert set(found) == {"collision", "min_clearance"}
     one = found["min_clearance"]
     straight, orca = (cell.values("min_clearance") for cell in result.cells)
@@ -291,8 +291,8 @@ def test_the_pareto_front_is_what_nobody_beats() -> None:
     rng = np.random.default_rng(0)
     points = [tuple(row) for row in rng.integers(0, 5, (40, 3)).tolist()]
     front = pareto_front(points)
-    for k, one in enumerate(points):
-        beaten = any(all(a <= b for a, b in zip(p, one, strict=True)) and p != one for p in points)
+    for k, point in enumerate(points):
+        beaten = any(all(a <= b for a, b in zip(p, point, strict=True)) and p != point for p in points)
         assert (k in front) is not beaten
 
 
@@ -310,13 +310,15 @@ def test_the_picture_shows_severity_and_who_is_not_beaten(result: EvaluationResu
 def _with_severities(cell: CellResult, *severities: float) -> CellResult:
     """Return a cell with successful runs of these severities."""
     metrics = {"success": 1.0, "collision": 0.0, "time_to_goal": 9.0}
-    rows = [RunRow(k, "success", metrics=metrics | {"max_severity": one}) for k, one in enumerate(severities)]
+    rows = [RunRow(k, "success", metrics=metrics | {"max_severity": severity}) for k, severity in enumerate(severities)]
     return dataclasses.replace(cell, runs=tuple(rows))
 
 
 def test_the_drawing_of_a_worst_run_has_the_outline_of_the_robot() -> None:
     plan = EvaluationPlan([load_trial("frontal", duration=1.0)], robots=["pepper", ""], seeds=[0])
-    pepper, disc = ([len(one["outline"]) for one in run.drawing["agents"]] for run in worst_runs(plan, evaluate(plan)))
+    pepper, disc = (
+        [len(item["outline"]) for item in run.drawing["agents"]] for run in worst_runs(plan, evaluate(plan))
+    )
     assert sorted(pepper) == [0, len(plan.cells[0].variant.robots[0].body.footprint)]
     assert disc == [0, 0]
 

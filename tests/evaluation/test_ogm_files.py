@@ -85,10 +85,10 @@ def test_a_forecast_sees_ten_scans(log):
     for k in range(20, 30):
         rows[k] = replace(rows[k], reading=replace(rows[k].reading, ranges=0.5 * rows[k].reading.ranges))
     logs = [log, replace(log, rows=tuple(rows))]
-    first, second = (score_scans([one], TrackedScene(), replace(SOGMP, every=3.0)).values for one in logs)
+    first, second = (score_scans([item], TrackedScene(), replace(SOGMP, every=3.0)).values for item in logs)
     assert np.isfinite(first).all()
     assert (first == second).all()
-    near, far = (score_scans([one], TrackedScene(), replace(SOGMP, every=3.0, past=15)).values for one in logs)
+    near, far = (score_scans([item], TrackedScene(), replace(SOGMP, every=3.0, past=15)).values for item in logs)
     assert (near != far).any()
 
 
@@ -97,15 +97,15 @@ def test_a_piece_ends_where_the_robot_jumps_or_a_pose_is_missing(small):
     for k in range(20, 30):
         np.save(small / "positions" / f"{k:07d}.npy", np.array([9.0, 9.0, 0.0]))
     np.save(small / "positions" / "0000029.npy", np.array([9.0, 9.0, 2.0 * math.pi + 1.0]))
-    starts = [(round(one.rows[0].time, 6), len(one.rows)) for one in read_ogm(small)]
+    starts = [(round(item.rows[0].time, 6), len(item.rows)) for item in read_ogm(small)]
     assert starts == [(0.0, 12), (1.3, 7), (2.0, 9), (2.9, 1)]
-    assert [len(one.rows) for one in read_ogm(small, min_duration=0.8)] == [12, 9]
-    assert [len(one.rows) for one in read_ogm(small, duration=1.5)] == [12, 2]
+    assert [len(item.rows) for item in read_ogm(small, min_duration=0.8)] == [12, 9]
+    assert [len(item.rows) for item in read_ogm(small, duration=1.5)] == [12, 2]
 
 
 def test_a_long_recording_is_cut_into_minutes(tmp_path):
     folder = write_split(tmp_path / "val", np.full((601, 3), 2.0), np.zeros((601, 3)))
-    assert [len(one.rows) for one in read_ogm(folder)] == [301, 300]
+    assert [len(item.rows) for item in read_ogm(folder)] == [301, 300]
 
 
 def test_the_folder_of_a_split_or_of_the_data_set_is_found(hall, tmp_path):
@@ -116,11 +116,11 @@ def test_the_folder_of_a_split_or_of_the_data_set_is_found(hall, tmp_path):
 def test_the_command_scores_a_folder(hall, tmp_path, capsys):
     plot = tmp_path / "scans.png"
     assert main(["predict", "--perception", str(hall.parent), "--json", "--plot", str(plot)]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert list(found["scores"]) == ["last-scan", "moved-scan", "tracked-scene", "learned-scene"]
-    assert (found["source"], found["ego"], found["past"], found["dilation"]) == ("test", "predicted", 10, 0)
-    assert found["horizons"] == [0.1, 0.3, 0.5, 0.7, 1.0]
-    late = {name: one["range_error"][4]["value"] for name, one in found["scores"].items()}
+    loads = json.loads(capsys.readouterr().out)
+    assert list(loads["scores"]) == ["last-scan", "moved-scan", "tracked-scene", "learned-scene"]
+    assert (loads["source"], loads["ego"], loads["past"], loads["dilation"]) == ("test", "predicted", 10, 0)
+    assert loads["horizons"] == [0.1, 0.3, 0.5, 0.7, 1.0]
+    late = {name: one["range_error"][4]["value"] for name, one in loads["scores"].items()}
     assert late["tracked-scene"] < late["last-scan"]
     assert plot.stat().st_size > 20_000
     words = ["predict", "--perception", str(hall), "--scan-predictor", "last-scan", "--horizons", "0.2", "0.4"]
@@ -176,12 +176,12 @@ def test_a_changed_byte_or_a_cut_file_gives_numbers_or_an_error(tmp_path_factory
     file = tmp_path_factory.mktemp("npy") / "a.npy"
     file.write_bytes(content[: end or None])
     try:
-        found = read_npy_row(file)
+        npy_row = read_npy_row(file)
     except DataError as error:
         assert "a.npy" in str(error)  # noqa: PT017
     else:
-        assert found.ndim == 1
-        assert found.size <= 36
+        assert npy_row.ndim == 1
+        assert npy_row.size <= 36
 
 
 @pytest.mark.parametrize("name", ["../positions/0000001.npy", "/etc/a.npy", "a\\b.npy", "C:a.npy", "..", "a.txt"])

@@ -76,8 +76,13 @@ def test_partial_results_belong_to_the_code_of_the_metric(mine: Path) -> None:
 
 
 def test_names_of_statistics() -> None:
-    found = parse_statistic("p95:mine.py:Nearest")
-    assert (found.name, found.metric, found.kind, found.address) == ("p95:nearest", "nearest", "p95", "mine.py:Nearest")
+    statistic = parse_statistic("p95:mine.py:Nearest")
+    assert (statistic.name, statistic.metric, statistic.kind, statistic.address) == (
+        "p95:nearest",
+        "nearest",
+        "p95",
+        "mine.py:Nearest",
+    )
     assert parse_requirement("mine.py:Nearest<0.5@95%").statistic.metric == "nearest"
 
 

@@ -38,12 +38,12 @@ def clip(tmp_path):
 
 def test_metrics_of_a_recording(clip):
     recording = load_robot_recording(clip, fps=10.0, mass=40.0, height=0.8)
-    found = recording.metrics()
-    assert found["duration"] == pytest.approx(5.7)  # it ends within 0.3 m of the last position
-    assert found["mean_speed"] == pytest.approx(1.0)
-    assert found["min_clearance"] == pytest.approx(1.2 - 0.3 - 0.25, abs=5e-3)
-    assert found["severity_lower_bound"] == 0.0
-    assert not set(found) - set(metric_table())
+    metrics = recording.metrics()
+    assert metrics["duration"] == pytest.approx(5.7)  # it ends within 0.3 m of the last position
+    assert metrics["mean_speed"] == pytest.approx(1.0)
+    assert metrics["min_clearance"] == pytest.approx(1.2 - 0.3 - 0.25, abs=5e-3)
+    assert metrics["severity_lower_bound"] == 0.0
+    assert not set(metrics) - set(metric_table())
     assert recording.agents.active.sum(axis=0).tolist() == [61, 61, 51]
 
 
@@ -104,9 +104,9 @@ def test_placements_of_known_values():
 def test_the_command_measures_and_simulates(clip, tmp_path, capsys):
     words = ["--fps", "10", "--json", "--out", str(tmp_path / "logs")]
     assert main(["evaluate", "--logs", str(clip), *words]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert json.loads((tmp_path / "logs/logs.json").read_text()) == found
-    assert found["logs"][0]["metrics"]["success"] == 1.0
+    loads = json.loads(capsys.readouterr().out)
+    assert json.loads((tmp_path / "logs/logs.json").read_text()) == loads
+    assert loads["logs"][0]["metrics"]["success"] == 1.0
     out = tmp_path / "real"
     options = ["--fps", "10", "--seeds", "0:12", "--out", str(out)]
     assert main(["evaluate", "--real", str(clip), *options]) == 0

@@ -22,7 +22,7 @@ def file(tmp_path):
     """Write three scans of a simulated S300, of which two are annotated."""
     lidar = Lidar2D(rays=450, field_of_view=math.radians(225.0), range_max=15.0)
     ranges = lidar.read(Scene.of(PLACES, radius=0.25), Pose.of((0.0, 0.0), 0.0)).ranges[0]
-    row = ",".join(f"{one:.3f}" for one in np.where(np.isfinite(ranges), ranges, 29.96))
+    row = ",".join(f"{item:.3f}" for item in np.where(np.isfinite(ranges), ranges, 29.96))
     (tmp_path / "walk.csv").write_text("".join(f"{k},{0.1 * k:.1f},{row}\n" for k in range(3)))
     polar = [[math.hypot(x, y), math.atan2(y, x)] for x, y in PLACES]
     (tmp_path / "walk.wp").write_text(f"0,{json.dumps(polar)}\n2,{json.dumps(polar[:2])}\n")
@@ -31,7 +31,7 @@ def file(tmp_path):
 
 def test_annotated_scans_have_their_people_in_the_frame_of_the_scanner(file):
     rows = read_drow(file)
-    assert [one.scan.time for one in rows] == [0.0, 0.1, 0.2]
+    assert [row.scan.time for row in rows] == [0.0, 0.1, 0.2]
     assert rows[1].people is None
     assert rows[0].people == pytest.approx(np.array(PLACES))
     assert np.isinf(rows[0].scan.ranges).any()
@@ -121,10 +121,10 @@ def test_trackers_are_scored_behind_each_detector(tmp_path, capsys):
     file = write_frog(tmp_path / "walk.h5")
     words = ["--tracker", "global-nearest-neighbor", "joint-probabilistic-data-association", "--json"]
     assert main(["track", str(file), *words]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["people"] == 36
-    assert len(found["scores"]) == 3
-    followed = found["scores"]["lidar-clusters, global-nearest-neighbor"]
+    loads = json.loads(capsys.readouterr().out)
+    assert loads["people"] == 36
+    assert len(loads["scores"]) == 3
+    followed = loads["scores"]["lidar-clusters, global-nearest-neighbor"]
     assert followed["recall"] > 0.7
     assert followed["error"] < 0.1
 
@@ -197,7 +197,7 @@ def write_lcas(folder, kind="binary"):
         f"WIDTH {len(points)}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {len(points)}\nDATA {kind}\n"
     )
     rows = np.column_stack([points, np.ones(len(points))]).astype("<f4")
-    text = "".join(" ".join(f"{one:.4f}" for one in row) + "\n" for row in rows)
+    text = "".join(" ".join(f"{item:.4f}" for item in row) + "\n" for row in rows)
     data = rows.tobytes() if kind == "binary" else text.encode()
     folder.mkdir(exist_ok=True)
     for name in ("1464001237.670017000.pcd", "1464001237.770017000.pcd"):
@@ -209,7 +209,7 @@ def write_lcas(folder, kind="binary"):
 @pytest.mark.parametrize("kind", ["binary", "ascii"])
 def test_scans_of_lcas_have_their_people(tmp_path, kind):
     rows = list(read_lcas(write_lcas(tmp_path, kind)))
-    assert [one.people is None for one in rows] == [False, True]
+    assert [row.people is None for row in rows] == [False, True]
     assert rows[0].people.tolist() == [[3.0, 0.5]]
     assert rows[1].scan.time - rows[0].scan.time == pytest.approx(0.1, abs=1e-6)
     assert len(list(read_lcas(tmp_path, annotated_only=True))) == 1
@@ -219,8 +219,8 @@ def test_scans_of_lcas_have_their_people(tmp_path, kind):
 
 def test_a_folder_of_lcas_is_scored_with_clusters_of_points(tmp_path, capsys):
     assert main(["track", str(write_lcas(tmp_path / "scans")), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["scores"]["cloud-clusters"]["recall"] == 1.0
+    loads = json.loads(capsys.readouterr().out)
+    assert loads["scores"]["cloud-clusters"]["recall"] == 1.0
     assert main(["track", str(tmp_path / "scans"), "--detector", "lidar-clusters"]) == 2
     assert "PointCloud" in capsys.readouterr().err
     assert main(["track", str(tmp_path / "scans"), "--by", "distance"]) == 2

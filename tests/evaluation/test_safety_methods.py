@@ -10,7 +10,7 @@ FRONTAL = load_trial("frontal")
 
 
 def test_both_forms_of_each_method_stand_in_order():
-    names = [one.name for one in with_safety(parse_methods("own, orca safety=0.2, mpc+safety"))]
+    names = [item.name for item in with_safety(parse_methods("own, orca safety=0.2, mpc+safety"))]
     assert names == ["own", "own+safety", "orca", "orca+safety", "mpc+safety"][:2] + [
         "orca safety=0.2",
         "orca+safety safety=0.2",

@@ -18,14 +18,14 @@ LIDAR = Lidar2D(rays=1440, range_max=30.0)
 def bands_of(people, discs=None, radius=0.25, lidar=LIDAR, pose=HERE):
     scan = lidar.read(Scene.of(people if discs is None else discs, radius=radius), pose)
     bands, missing = scan_statistics([(scan, np.array(people, dtype=float))])
-    return {one.near: one for one in bands}, missing
+    return {band.near: band for band in bands}, missing
 
 
 @pytest.mark.parametrize("distance", [1.0, 3.0, 7.0, 12.0])
 def test_returns_are_the_width_of_the_body_over_the_step_of_the_beams(distance):
     turn = 2.0 * math.pi / 1440
     bands, missing = bands_of([[distance * math.cos(2.5), distance * math.sin(2.5)]], pose=Pose.of((0.0, 0.0), -0.7))
-    (seen,) = [one for one in bands.values() if one.people]
+    (seen,) = [band for band in bands.values() if band.people]
     expected = 2.0 * math.asin(0.25 / distance) / turn
     assert seen.returns == pytest.approx(expected, abs=1.0)
     assert (seen.unseen, seen.apart) == (0.0, 0.0)
@@ -73,8 +73,8 @@ def test_wrong_readings_are_one_sentence():
 def test_the_command_prints_bands_of_a_trial(capsys):
     words = ["track", "crossing-flows", "--duration", "1", "--statistics"]
     assert main([*words, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    returns = [one["returns"] for one in found["bands"] if one["people"]]
+    loads = json.loads(capsys.readouterr().out)
+    returns = [one["returns"] for one in loads["bands"] if one["people"]]
     assert returns == sorted(returns, reverse=True)
     assert main(words) == 0
     assert "returns a person" in capsys.readouterr().out

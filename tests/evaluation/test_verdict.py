@@ -130,14 +130,14 @@ def test_what_is_touched_is_that_of_the_bodies_of_the_world() -> None:
     kinds = set()
     for episode in simulate_seeds(trial, range(6)):
         flags = episode_metrics(episode, ["task"])
-        touched = {one.second.kind for one in episode.collisions}
+        touched = {collision.second.kind for collision in episode.collisions}
         kinds |= touched
         assert flags["person_collision"] == float("person" in touched)
         assert flags["wall_collision"] == float("wall" in touched)
-        assert flags["wall_collisions"] == sum(one.second.kind == "wall" for one in episode.collisions)
+        assert flags["wall_collisions"] == sum(collision.second.kind == "wall" for collision in episode.collisions)
         assert max(flags["person_collision"], flags["wall_collision"]) == float(episode.outcome == "collision")
     assert kinds == {"person", "wall"}
     planar = load_trial("doorway", {"robot/navigator/type": "straight"})
-    values = [episode_metrics(one, ["task"]) for one in simulate_seeds(planar, range(2))]
-    assert np.array_equal([one["wall_collision"] for one in values], [1.0, 1.0])
-    assert not any(one["person_collision"] for one in values)
+    values = [episode_metrics(seed, ["task"]) for seed in simulate_seeds(planar, range(2))]
+    assert np.array_equal([value["wall_collision"] for value in values], [1.0, 1.0])
+    assert not any(value["person_collision"] for value in values)

@@ -65,7 +65,7 @@ CRITICS = {
 MPPI = {
     "plugin", "time_steps", "model_dt", "batch_size", "iteration_count", "motion_model", "vx_max", "vx_min", "vy_max",
     "wz_max", "ax_max", "ax_min", "az_max", "vx_std", "vy_std", "wz_std", "prune_distance", "transform_tolerance",
-    "temperature", "gamma", "visualize", "critics", *(f"{one}.{name}" for one in CRITICS for name in CRITICS[one]),
+    "temperature", "gamma", "visualize", "critics", *(f"{item}.{name}" for item in CRITICS for name in CRITICS[item]),
 }  # fmt: skip
 NAVIGATOR = {"global_frame", "robot_base_frame", "odom_topic", "bt_loop_duration", "default_server_timeout"}
 PLANNER = {

@@ -57,7 +57,12 @@ def test_markers_are_the_edges_of_the_boxes():
 
     marker = markers_of(HEADER, FOUND, visualization_msgs.msg)
     assert (marker.header.frame_id, marker.type) == ("robot/camera_optical", ImageMarker.LINE_LIST)
-    assert [(one.x, one.y) for one in marker.points[:4]] == [(10.0, 20.0), (30.0, 20.0), (30.0, 20.0), (30.0, 80.0)]
+    assert [(point.x, point.y) for point in marker.points[:4]] == [
+        (10.0, 20.0),
+        (30.0, 20.0),
+        (30.0, 20.0),
+        (30.0, 80.0),
+    ]
     assert len(marker.points) == 8
 
 
@@ -79,7 +84,7 @@ def test_the_process_answers_images_over_ros2(domain, tmp_path, monkeypatch):
         monkeypatch.setenv(name, value)
     network = write_network(tmp_path / "person.onnx", "yolov8")
     trial = replace(load_trial(str(FOLDER / "hall.xml")), duration=60.0)
-    (file, *words) = next(one for one in page_commands("person-detector", "python") if "markers" in one)
+    (file, *words) = next(command for command in page_commands("person-detector", "python") if "markers" in command)
     command = [sys.executable, ROOT / file, *words, "--model", network, "--size", "64", "--threshold", "0.1"]
     listener, seen = Participant(rclpy, "listener", domain), []
     listener.node.create_subscription(ImageMarker, "/robot/camera/detection_markers", seen.append, 10)
@@ -97,7 +102,7 @@ def test_the_process_answers_images_over_ros2(domain, tmp_path, monkeypatch):
     assert process.returncode == 0, errors
     assert re.match(r"[1-9]\d* images, [1-9]\d* people, median \d+ ms an image", printed), (printed, errors)
     assert seen[0].header.frame_id == "robot/camera_optical"
-    assert max(one.x for one in seen[0].points) - min(one.x for one in seen[0].points) == pytest.approx(200.0)
+    assert max(point.x for point in seen[0].points) - min(point.x for point in seen[0].points) == pytest.approx(200.0)
 
 
 @pytest.mark.program

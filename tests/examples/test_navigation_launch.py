@@ -51,11 +51,11 @@ def text_of(distribution, robot="robot"):
 def nav2(distribution):
     """Return the parameters of each node."""
     nodes = yaml.safe_load(text_of(distribution))["robot"]
-    found = {}
+    result = {}
     for name, inside in nodes.items():
         space, rows = (f"{name}/{name}", inside[name]) if name in inside else (name, inside)
-        found[space] = dict(flat(rows["ros__parameters"]))
-    return found
+        result[space] = dict(flat(rows["ros__parameters"]))
+    return result
 
 
 def flat(rows, before=""):
@@ -77,13 +77,13 @@ def frames(trial):
     """Parent of each frame of one second of the trial."""
     transport = MemoryTransport(["/tf", "/tf_static"])
     run_bridge(replace(trial, duration=0.5), [transport], 0, None, BridgeClock("free"))
-    rows = [row for one in transport.sent if one.topic.startswith("/tf") for row in one.message.transforms]
+    rows = [row for item in transport.sent if item.topic.startswith("/tf") for row in item.message.transforms]
     return {row.child_frame_id: row.header.frame_id for row in rows}
 
 
 def check_values(rows, trial, frames):
     """Check topics, frames and limits among parameters by name, whatever the stack."""
-    known = {one.name: one for one in RobotInterface.of(trial).outputs}
+    known = {output.name: output for output in RobotInterface.of(trial).outputs}
     kinds = {"map": "nav_msgs/msg/OccupancyGrid", "odom": "nav_msgs/msg/Odometry", "scan": "sensor_msgs/msg/LaserScan"}
     topics = {name: value for name, value in rows.items() if str(value).startswith("/")}
     for name, value in topics.items():
@@ -135,8 +135,8 @@ def test_topics_frames_and_limits_of_nav2_are_those_of_the_bridge(distribution, 
     for node, rows in found.items():
         for name, value in rows.items():
             if name in ("plugins", "navigators") or name.endswith(("_plugins", "_plugin")):
-                for one in [value] if isinstance(value, str) else value:
-                    assert f"{one}.plugin" in rows, (node, one)
+                for item in [value] if isinstance(value, str) else value:
+                    assert f"{item}.plugin" in rows, (node, item)
 
 
 @pytest.mark.live
@@ -147,10 +147,10 @@ def test_ros_2_gives_the_parameters_to_the_nodes_of_the_launch_file(distribution
     wanted = nav2(distribution)
     done = subprocess.run([sys.executable, "-c", READ, file, *wanted], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr[-2000:]
-    found = json.loads(done.stdout.splitlines()[-1])
-    for rows in found.values():
+    loads = json.loads(done.stdout.splitlines()[-1])
+    for rows in loads.values():
         rows.pop("start_type_description_service", None)  # of every node
-    assert found == wanted
+    assert loads == wanted
 
 
 class Action:
@@ -171,30 +171,30 @@ def launch_modules():
         "launch_ros.actions": ["Node"],
         "launch_ros.parameter_descriptions": ["ParameterFile"],
     }
-    found = {}
+    result = {}
     for name, classes in names.items():
-        found[name] = types.ModuleType(name)
-        for one in classes:
-            setattr(found[name], one, lambda *args, kind=one, **named: Action(kind, *args, **named))
-    return found
+        result[name] = types.ModuleType(name)
+        for class_ in classes:
+            setattr(result[name], class_, lambda *args, kind=class_, **named: Action(kind, *args, **named))
+    return result
 
 
 def test_the_launch_file_starts_the_nodes_that_have_parameters(monkeypatch, trial):
     for name, module in launch_modules().items():
         monkeypatch.setitem(sys.modules, name, module)
     made = runpy.run_path(str(FOLDER / "nav2" / "nav2.launch.py"))["generate_launch_description"]().arguments[0]
-    defaults = {one.arguments[0]: one.named["default_value"] for one in made if one.kind == "DeclareLaunchArgument"}
+    defaults = {item.arguments[0]: item.named["default_value"] for item in made if item.kind == "DeclareLaunchArgument"}
     assert defaults == {"robot": trial.robots[0].name, "parameters": "nav2_jazzy.yaml", "amcl": "false", "rviz": "true"}
-    nodes = {one.named.get("name", "rviz"): one.named for one in made if one.kind == "Node"}
+    nodes = {item.named.get("name", "rviz"): item.named for item in made if item.kind == "Node"}
     servers = {name for name in nodes if not name.startswith(("lifecycle", "rviz"))}
     for distribution in NAV2_FILES:
         assert servers == {name for name in nav2(distribution) if "/" not in name}
-    listed = [one["parameters"][0]["node_names"] for name, one in nodes.items() if name.startswith("lifecycle")]
+    listed = [node["parameters"][0]["node_names"] for name, node in nodes.items() if name.startswith("lifecycle")]
     assert sorted(name for names in listed for name in names) == sorted(servers)
     remapped = {name: dict(nodes[name]["remappings"]) for name in servers}
     assert remapped["velocity_smoother"] == {"cmd_vel": "cmd_vel_nav", "cmd_vel_smoothed": "cmd_vel"}
     assert remapped["controller_server"] == remapped["behavior_server"] == {"cmd_vel": "cmd_vel_nav"}
-    inputs = {one.name: one.kinds for one in RobotInterface.of(trial).inputs}
+    inputs = {input_topic.name: input_topic.kinds for input_topic in RobotInterface.of(trial).inputs}
     assert "geometry_msgs/msg/Twist" in inputs["/robot/cmd_vel"]
     assert "geometry_msgs/msg/PoseStamped" in inputs["/robot/goal_pose"]
 
@@ -251,14 +251,14 @@ def test_the_launch_file_of_a_page_exists(page, program):
 @pytest.mark.parametrize("stack", ["nav2", "move_base"])
 def test_rviz_shows_topics_that_exist_with_their_quality(stack, trial):
     shown = yaml.safe_load((FOLDER / stack / "crowd.rviz").read_text())["Visualization Manager"]
-    known = {one.name: one.quality for one in RobotInterface.of(trial).outputs}
-    topics = [one.get("Topic", one.get("Marker Topic")) for one in shown["Displays"]]
-    names = [one["Value"] if isinstance(one, dict) else one for one in topics if one]
+    known = {output.name: output.quality for output in RobotInterface.of(trial).outputs}
+    topics = [item.get("Topic", item.get("Marker Topic")) for item in shown["Displays"]]
+    names = [topic["Value"] if isinstance(topic, dict) else topic for topic in topics if topic]
     assert {"/map", "/robot/scan", "/crowd/markers"} <= {*names}
-    for one in topics:
-        if isinstance(one, dict) and one["Value"] in known:
-            quality = known[one["Value"]]
-            assert (one["Durability Policy"] == "Transient Local") == quality.latched
-            assert (one["Reliability Policy"] == "Reliable") <= quality.reliable
-    goals = [one["Topic"] for one in shown["Tools"] if "Topic" in one]
+    for topic in topics:
+        if isinstance(topic, dict) and topic["Value"] in known:
+            quality = known[topic["Value"]]
+            assert (topic["Durability Policy"] == "Transient Local") == quality.latched
+            assert (topic["Reliability Policy"] == "Reliable") <= quality.reliable
+    goals = [item["Topic"] for item in shown["Tools"] if "Topic" in item]
     assert goals == (["/robot/move_base_simple/goal"] if stack == "move_base" else [shown["Tools"][1]["Topic"]])

@@ -129,9 +129,9 @@ def test_overlap_is_intersection_over_union():
 def test_people_who_do_not_count_are_neither_missed_nor_found():
     boxes = np.array([[0.0, 0.0, 41.0, 100.0], [200.0, 0.0, 241.0, 100.0], [400.0, 0.0, 441.0, 100.0]])
     truth = TrueBoxes(boxes, np.array([3.0, 5.0, 7.0]), np.array([True, False, True]))
-    found = Detections(boxes[[0, 1, 0]] + [[0.0], [0.0], [600.0]], np.array([0.9, 0.8, 0.7]))
+    detections = Detections(boxes[[0, 1, 0]] + [[0.0], [0.0], [600.0]], np.array([0.9, 0.8, 0.7]))
     tally = Tally()
-    tally.add(found, truth, focal=100.0)
+    tally.add(detections, truth, focal=100.0)
     assert tally.right == [True, False]
     assert tally.recall() == (0.5, 2)
     assert tally.recall(0.0, 4.0) == (1.0, 1)

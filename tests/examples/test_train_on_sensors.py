@@ -35,9 +35,9 @@ def test_labels_are_the_future_of_the_simulation():
     keep = stream.gap_to_people
 
     def note():
-        found = keep()
-        gaps.append(found)
-        return found
+        result = keep()
+        gaps.append(result)
+        return result
 
     stream.gap_to_people = note
     for _ in range(LAGS[-1] + 1 + 24):

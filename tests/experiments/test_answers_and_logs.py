@@ -209,5 +209,5 @@ def test_a_log_that_is_missing_is_named(tmp_path: Path) -> None:
 
 def test_imported_trials_have_short_names_of_their_own() -> None:
     long = "x" * 40
-    found = _names(["a/One.xml", "b/one.xml", f"{long}.xml", "7 up.xml", "a/One.xml", "ä.xml"])
-    assert list(found.values()) == ["One", "one_2", "x" * 30, "trial_7_up", "trial__"]
+    names = _names(["a/One.xml", "b/one.xml", f"{long}.xml", "7 up.xml", "a/One.xml", "ä.xml"])
+    assert list(names.values()) == ["One", "one_2", "x" * 30, "trial_7_up", "trial__"]

@@ -89,17 +89,17 @@ def test_a_rehearsal_goes_from_consent_to_a_report(name, conditions, request, tm
     assert main(["experiment", "analyse", str(data), "--json"]) == 0
     tests = json.loads(capsys.readouterr().out)["tests"]
     assert len(tests) == len(found.tests) > 0
-    assert all(one["bound"] == pytest.approx(0.6) for one in tests if one["measure"] == "rating.safe")
+    assert all(test["bound"] == pytest.approx(0.6) for test in tests if test["measure"] == "rating.safe")
 
 
 def test_evaluate_compares_the_participants_of_a_study(crossing, crossing_analysis, tmp_path, capsys):
     words = ["evaluate", "--participants", str(crossing)]
     assert main([*words, "--json"]) == 0
     tests = json.loads(capsys.readouterr().out)["tests"]
-    shown = {(one["measure"], one["first"], one["second"]): one["difference"] for one in tests}
+    shown = {(test["measure"], test["first"], test["second"]): test["difference"] for test in tests}
     assert len(shown) == len(crossing_analysis.tests)
-    for one in crossing_analysis.tests:
-        assert shown[one.measure, one.first, one.second] == pytest.approx(one.test.difference, nan_ok=True)
+    for test in crossing_analysis.tests:
+        assert shown[test.measure, test.first, test.second] == pytest.approx(test.test.difference, nan_ok=True)
     assert main([*words, "--out", str(tmp_path / "compared")]) == 0
     assert f"participants: {len(PARTICIPANTS)}" in capsys.readouterr().out
     assert (tmp_path / "compared" / "report.html").is_file()
@@ -197,7 +197,7 @@ def test_a_questionnaire_becomes_its_questions_and_survives_the_file():
     experiment = load_experiment("crossing")
     again = parse_experiment(experiment_xml(experiment).encode(), place="copy", folder=experiment.folder)
     assert again == experiment
-    assert len(next(one for one in again.endings if one.name == "sickness_after").questions) == 16
+    assert len(next(ending for ending in again.endings if ending.name == "sickness_after").questions) == 16
     answers = {question.name: 7 for question in screen.questions}
     scores = questionnaire_scores(answers)
     assert scores["embodiment_ownership"] == 4.0  # one of the two items is reverse

@@ -194,7 +194,7 @@ def test_a_second_part_does_not_replace_the_first(tmp_path):
     assert sorted(path.name for path in (tmp_path / "streams").iterdir()) == [
         "pulse-2.csv", "pulse-2.json", "pulse.csv", "pulse.json",
     ]  # fmt: skip
-    assert [one.values[0, 0] for one in read_streams(tmp_path)] == [62.0, 61.0]
+    assert [stream.values[0, 0] for stream in read_streams(tmp_path)] == [62.0, 61.0]
 
 
 @pytest.mark.live

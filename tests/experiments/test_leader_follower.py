@@ -115,9 +115,9 @@ def test_a_rehearsal_goes_from_consent_to_a_report(study, tmp_path, capsys):
     assert not re.search(r"""(src|href)=["']?https?:|url\(https?:|@import""", page)
     assert main(["experiment", "analyse", str(study), "--json"]) == 0
     tests = json.loads(capsys.readouterr().out)["tests"]
-    shown = {(one["measure"], one["first"], one["second"]): one["difference"] for one in tests}
-    for one in found.tests:
-        assert shown[one.measure, one.first, one.second] == pytest.approx(one.test.difference, nan_ok=True)
+    shown = {(test["measure"], test["first"], test["second"]): test["difference"] for test in tests}
+    for test in found.tests:
+        assert shown[test.measure, test.first, test.second] == pytest.approx(test.test.difference, nan_ok=True)
 
 
 def test_rehearsals_repeat_and_answer_every_question(study):

@@ -176,13 +176,13 @@ def test_samples_equal_single_runs(space: SearchSpace, plain: FalsificationResul
 
 def test_a_proposal_integrates_to_one_and_its_weights_are_bounded() -> None:
     rng = np.random.default_rng(0)
-    found = fit_proposal(rng.normal(2.0, 0.3, (300, 2)), rng.random(300), rng, 0.1)
-    draws = found.draw(rng, 200_000)
-    weights = np.exp(-found.log_ratio(draws))
+    proposal = fit_proposal(rng.normal(2.0, 0.3, (300, 2)), rng.random(300), rng, 0.1)
+    draws = proposal.draw(rng, 200_000)
+    weights = np.exp(-proposal.log_ratio(draws))
     assert weights.mean() == pytest.approx(1.0, abs=0.03)
     assert weights.max() <= 10.0 + 1e-9
     plain = Proposal.standard(2).draw(rng, 200_000)
-    assert np.exp(found.log_ratio(plain)).mean() == pytest.approx(1.0, abs=0.1)
+    assert np.exp(proposal.log_ratio(plain)).mean() == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.parametrize("repeats", sizes(100, 300))
@@ -211,9 +211,9 @@ def test_splitting_estimates_a_known_probability(seeds: bool, bound: float) -> N
     values = []
     for seed in range(6):
         runner = Line(12_000, 2, bound, seeds)
-        found = Splitting().search(runner, np.random.default_rng(seed))
-        assert found.estimate is not None
-        values.append(found.estimate.value)
+        match = Splitting().search(runner, np.random.default_rng(seed))
+        assert match.estimate is not None
+        values.append(match.estimate.value)
         assert runner.remaining >= 0
     assert float(np.mean(values)) == pytest.approx(float(special.ndtr(-bound)), rel=0.35)
 
@@ -223,21 +223,21 @@ def test_cross_entropy_estimates_a_known_probability(probability: float, seeds: 
     covered, ratios = 0, []
     for seed in range(seeds):
         runner = Line(1000, 3, -float(special.ndtri(probability)))
-        found = CrossEntropy().search(runner, np.random.default_rng(seed))
-        assert found.estimate is not None
-        covered += found.estimate.low <= probability <= found.estimate.high
-        ratios.append(found.estimate.value / probability)
-        assert found.estimate.high / found.estimate.low < 3.0
-        assert np.all(found.weights > 0.0)
+        match = CrossEntropy().search(runner, np.random.default_rng(seed))
+        assert match.estimate is not None
+        covered += match.estimate.low <= probability <= match.estimate.high
+        ratios.append(match.estimate.value / probability)
+        assert match.estimate.high / match.estimate.low < 3.0
+        assert np.all(match.weights > 0.0)
     assert covered >= 0.9 * seeds
     assert float(np.mean(ratios)) == pytest.approx(1.0, abs=0.06)
 
 
 def test_cross_entropy_without_a_failure_has_an_upper_bound() -> None:
-    found = CrossEntropy().search(Line(400, 2, 60.0), np.random.default_rng(0))
-    assert found.estimate is not None
-    assert (found.estimate.value, found.estimate.low) == (0.0, 0.0)
-    assert 3.0 / 400 < found.estimate.high < 0.1
+    match = CrossEntropy().search(Line(400, 2, 60.0), np.random.default_rng(0))
+    assert match.estimate is not None
+    assert (match.estimate.value, match.estimate.low) == (0.0, 0.0)
+    assert 3.0 / 400 < match.estimate.high < 0.1
 
 
 def test_searches_agree_with_plain_runs(space: SearchSpace, plain: FalsificationResult) -> None:
@@ -267,7 +267,7 @@ def test_clusters_divide_by_event_and_values() -> None:
     rows += [Sample((4.0, 0.0), 9, "collision", -0.2, event="wall"), Sample((0.0, 0.0), 1, "success", 1.0)]
     weights = np.array([1.0] * 8 + [2.0, 5.0])
     clusters = find_clusters(rows, weights)
-    assert [(one.event, len(one.members), one.share) for one in clusters] == [
+    assert [(cluster.event, len(cluster.members), cluster.share) for cluster in clusters] == [
         ("person left", 5, 0.5), ("person left", 3, pytest.approx(0.3)), ("wall", 1, 0.2),
     ]  # fmt: skip
     assert (clusters[0].likely, clusters[0].worst) == (0, 4)
@@ -327,7 +327,7 @@ def test_a_navigator_that_fails_is_a_counted_failure_and_its_file_travels(
     assert result.failures == 3
     assert {sample.outcome for sample in result.samples} == {"error"}
     assert sum(result.errors.values()) == 3
-    assert all(message in one.lower() for one in result.errors)
+    assert all(message in error.lower() for error in result.errors)
     assert result.estimate is not None
     assert result.estimate.value == 1.0
     assert (tmp_path / "out" / "found" / "shy.py").is_file()

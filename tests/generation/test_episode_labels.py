@@ -29,13 +29,13 @@ def episode(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_coco_has_the_recorded_image_and_everybody_in_it(episode: Path, tmp_path: Path) -> None:
     assert main(["export", str(episode), "--labels", "coco", "--to", str(tmp_path / "coco")]) == 0
-    found = json.loads((tmp_path / "coco" / "coco.json").read_text(encoding="utf-8"))
-    assert len(found["images"]) == 1
-    assert len(found["annotations"]) == 3
-    assert all(one["num_keypoints"] > 0 for one in found["annotations"])
+    loads = json.loads((tmp_path / "coco" / "coco.json").read_text(encoding="utf-8"))
+    assert len(loads["images"]) == 1
+    assert len(loads["annotations"]) == 3
+    assert all(one["num_keypoints"] > 0 for one in loads["annotations"])
     assert main(["export", str(episode), "--table", "pictures", "--to", str(tmp_path / "pictures.csv")]) == 0
     (recorded,) = (tmp_path / "pictures-images").glob("*.png")
-    with Image.open(tmp_path / "coco" / found["images"][0]["file_name"]) as one, Image.open(recorded) as other:
+    with Image.open(tmp_path / "coco" / loads["images"][0]["file_name"]) as one, Image.open(recorded) as other:
         np.testing.assert_array_equal(np.asarray(one), np.asarray(other))
 
 
@@ -56,7 +56,7 @@ def test_an_existing_folder_is_replaced_on_request_only(episode: Path, tmp_path:
     assert (tmp_path / "coco" / "old").is_file()
     export_labels(episode, tmp_path / "coco", "coco", force=True)
     assert not (tmp_path / "coco" / "old").exists()
-    assert [one.name for one in tmp_path.iterdir()] == ["coco"]
+    assert [item.name for item in tmp_path.iterdir()] == ["coco"]
 
 
 def test_robots_without_such_sensors_are_refused(tmp_path: Path) -> None:

@@ -77,8 +77,8 @@ def test_labels_agree_with_the_scan(tmp_path: Path) -> None:
     found = arrays_of(tmp_path)
     ids, returns, hit = (found[f"{SCAN}/{name}"] for name in ("ids", "returns", "hit"))
     for row in range(0, len(ids), 7):
-        for column, one in enumerate(ids[row]):
-            assert returns[row, column] == (np.sum(hit[row] == one) if one >= 0 else 0)
+        for column, item in enumerate(ids[row]):
+            assert returns[row, column] == (np.sum(hit[row] == item) if item >= 0 else 0)
     seen, hidden = returns > 0, found[f"{SCAN}/occluded"]
     assert not (seen & (hidden == 1.0)).sum() > 0.02 * seen.sum()
     assert np.isnan(hidden[:, -1]).all()  # the robot itself
@@ -106,7 +106,7 @@ def test_occlusion_agrees_with_geometry(seed: int) -> None:
         lines = [shapely.LineString([origin[0], place[0, a] + size[0, a] * step * across]) for step in steps]
         others = [discs[b] for b in range(6) if b != a and active[0, b]]
         others += [shapely.LineString(pair) for pair in zip(walls[0], walls[1], strict=True)]
-        share = np.mean([any(line.intersects(one) for one in others) for line in lines])
+        share = np.mean([any(line.intersects(other) for other in others) for line in lines])
         assert abs(found[a] - share) <= 1.0 / 16 + 1e-9
 
 
@@ -206,16 +206,16 @@ def test_images_have_boxes_and_masks(tmp_path: Path) -> None:
     generate(plan, tmp_path)
     coco = json.loads((tmp_path / "coco.json").read_text())
     assert len(coco["images"]) == 2 * 6
-    assert [one["id"] for one in coco["images"]] == list(range(1, 13))
-    assert all((tmp_path / "images" / one["file_name"]).is_file() for one in coco["images"])
+    assert [item["id"] for item in coco["images"]] == list(range(1, 13))
+    assert all((tmp_path / "images" / item["file_name"]).is_file() for item in coco["images"])
     assert len(coco["annotations"]) >= 12
-    for one in coco["annotations"]:
-        counts = np.array(one["segmentation"]["counts"])
+    for item in coco["annotations"]:
+        counts = np.array(item["segmentation"]["counts"])
         mask = np.repeat(np.arange(len(counts)) % 2, counts).reshape(48, 32).T
         rows, columns = np.nonzero(mask)
         box = [columns.min(), rows.min(), columns.max() - columns.min() + 1, rows.max() - rows.min() + 1]
-        assert one["bbox"] == box
-        assert one["area"] == mask.sum()
+        assert item["bbox"] == box
+        assert item["area"] == mask.sum()
 
 
 def test_a_seed_without_room_is_told(tmp_path: Path) -> None:

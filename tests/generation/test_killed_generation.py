@@ -23,8 +23,8 @@ def test_a_killed_generation_ends_with_the_same_files(tmp_path: Path, kills: int
     run_killed(tmp_path, [*WORDS, "--seeds", seeds, "--format", kind], kills, seed=kills)
     found = []
     for name in ("whole", "killed"):
-        files = (one for one in (tmp_path / name).rglob("*") if one.is_file())
-        found.append({one.relative_to(tmp_path / name).as_posix(): one.read_bytes() for one in files})
+        files = (item for item in (tmp_path / name).rglob("*") if item.is_file())
+        found.append({file.relative_to(tmp_path / name).as_posix(): file.read_bytes() for file in files})
     assert sorted(found[0]) == sorted(found[1])
     assert [name for name in found[0] if found[0][name] != found[1][name]] == []
     assert json.loads(found[0]["card.json"])["files"]

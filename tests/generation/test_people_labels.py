@@ -38,8 +38,8 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def people(data: Path) -> list[dict[str, Any]]:
-    found = json.loads((data / "coco.json").read_text(encoding="utf-8"))
-    return [one for one in found["annotations"] if one["image_id"] == 1]
+    loads = json.loads((data / "coco.json").read_text(encoding="utf-8"))
+    return [one for one in loads["annotations"] if one["image_id"] == 1]
 
 
 def test_keypoints_lie_in_the_box_of_the_pixels_and_heads_are_up(data: Path) -> None:
@@ -57,22 +57,22 @@ def test_keypoints_lie_in_the_box_of_the_pixels_and_heads_are_up(data: Path) -> 
 
 
 def test_left_and_right_are_those_of_the_person(data: Path) -> None:
-    ann, ben = sorted(people(data), key=lambda one: one["box_3d"]["center"][0])[::2]
-    for one, toward in ((ann, 1.0), (ben, -1.0)):
-        points = np.array(one["keypoints"]).reshape(17, 3)
+    ann, ben = sorted(people(data), key=lambda person: person["box_3d"]["center"][0])[::2]
+    for item, toward in ((ann, 1.0), (ben, -1.0)):
+        points = np.array(item["keypoints"]).reshape(17, 3)
         assert toward * (points[5, 0] - points[6, 0]) > 0.0  # the left shoulder of who looks at the camera is right
 
 
 def test_who_stands_behind_another_is_hidden(data: Path) -> None:
-    hidden = [one for one in people(data) if np.count_nonzero(np.array(one["keypoints"])[2::3] == 1) > 5]
+    hidden = [person for person in people(data) if np.count_nonzero(np.array(person["keypoints"])[2::3] == 1) > 5]
     assert len(hidden) == 1
     assert hidden[0]["box_3d"]["size"][2] < 1.4  # the boy
 
 
 def test_boxes_in_space_enclose_the_person(data: Path) -> None:
-    for one in people(data):
-        x, y, z = one["box_3d"]["center"]
-        length, width, height = one["box_3d"]["size"]
+    for person in people(data):
+        x, y, z = person["box_3d"]["center"]
+        length, width, height = person["box_3d"]["size"]
         place = min(((4, 0.5, 1.6), (6, -0.8, 1.75), (5.2, 0.72, 1.3)), key=lambda p: abs(p[0] - x))
         assert (x, y) == pytest.approx(place[:2], abs=0.12)
         assert height == pytest.approx(place[2], abs=0.12)
@@ -110,8 +110,8 @@ def test_clouds_have_instances(data: Path) -> None:
     assert np.all(np.isfinite(points))
     kinds = labels & 0xFFFF
     assert {30, 50} <= set(kinds.tolist())
-    for one in np.unique(labels[kinds == 30] >> 16):
-        mine = points[(labels >> 16) == one]
+    for item in np.unique(labels[kinds == 30] >> 16):
+        mine = points[(labels >> 16) == item]
         assert np.ptp(mine[:, :2], axis=0).max() < 1.2
     assert np.all(labels[kinds != 30] >> 16 == 0)
 

@@ -79,8 +79,8 @@ def test_vector_and_single_environments_are_equal() -> None:
     for e, seed in enumerate([4, 9, 2]):
         env = CrowdEnv("circle-crossing", "both")
         alone = [env.reset(seed=seed)[0], *(env.step(row[e])[0] for row in actions)]
-        for one, rows in zip(alone, many, strict=True):
-            for name, value in one.items():
+        for item, rows in zip(alone, many, strict=True):
+            for name, value in item.items():
                 assert value.tobytes() == rows[name][e].tobytes()
 
 

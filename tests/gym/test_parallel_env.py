@@ -45,7 +45,7 @@ def test_the_official_checks_pass() -> None:
 
 def test_an_episode_has_the_bytes_of_a_run() -> None:
     trial = two_robots(1.5)
-    robots = tuple(dataclasses.replace(one, navigator=Steady()) for one in trial.robots)
+    robots = tuple(dataclasses.replace(robot, navigator=Steady()) for robot in trial.robots)
     episode = simulate(dataclasses.replace(trial, robots=robots), 7)
     env = parallel_env(trial)
     env.reset(seed=7)

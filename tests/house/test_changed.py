@@ -70,7 +70,7 @@ def test_names_are_those_that_python_gives():
     scope = {}
     exec(SOURCE, scope)
     assert scope["Car"].drive.__code__.co_qualname == "Car.drive"
-    inner = next(one for one in scope["Car"].drive.__code__.co_consts if hasattr(one, "co_qualname"))
+    inner = next(co_const for co_const in scope["Car"].drive.__code__.co_consts if hasattr(co_const, "co_qualname"))
     assert inner.co_qualname == calls.place_at(SOURCE, line("            return table()")).name
 
 
@@ -93,8 +93,8 @@ def test_who_mentions_a_function_that_the_records_lack_counts_as_its_caller(tmp_
     (tmp_path / "foreign.py").write_text("def table(): return table\n")
     place = next(place for place in calls.places(SOURCE) if place.name == "table")
     assert place.hidden
-    found = calls.mentions(tmp_path, "car.py", place)
-    assert found == {("car.py", "Car.drive.<locals>.turn"), ("other.py", "drawn")}
+    mentions = calls.mentions(tmp_path, "car.py", place)
+    assert mentions == {("car.py", "Car.drive.<locals>.turn"), ("other.py", "drawn")}
 
 
 def test_tests_fit_into_a_time():

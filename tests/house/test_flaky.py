@@ -169,10 +169,10 @@ def test_the_plugin_shuffles_and_notes_outcomes(tmp_path):
         environment = os.environ | {"PYTHONPATH": str(ROOT / "tools"), "SHUFFLE": seed, "SHUFFLE_OUT": str(out)}
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=environment)
         assert f"order of the tests: SHUFFLE={seed}" in done.stdout
-        found = shuffle.outcomes(out.read_text())
-        assert [found[f"test_a.py::test_{name}"] for name in ("one", "two", "wrong", "broken")] == [
+        outcomes = shuffle.outcomes(out.read_text())
+        assert [outcomes[f"test_a.py::test_{name}"] for name in ("one", "two", "wrong", "broken")] == [
             "passed", "passed", "failed", "error",
         ]  # fmt: skip
-        assert list(found) == shuffle.order(list(found), seed)
-        orders.add(tuple(found))
+        assert list(outcomes) == shuffle.order(list(outcomes), seed)
+        orders.add(tuple(outcomes))
     assert len(orders) == 3

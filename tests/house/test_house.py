@@ -101,7 +101,7 @@ def _type_checked_names(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
     blocks = [n for n in tree.body if isinstance(n, ast.If) and ast.unparse(n.test) == "TYPE_CHECKING"]
     imports = [n for block in blocks for n in block.body if isinstance(n, ast.ImportFrom)]
-    return {alias.asname or alias.name for one in imports for alias in one.names}
+    return {alias.asname or alias.name for item in imports for alias in item.names}
 
 
 def test_names_that_a_room_loads_on_first_use_are_there_for_type_checkers():

@@ -86,15 +86,15 @@ class Contents:
     def of(cls, node: Part) -> Contents:
         """Walk through the tree."""
         names, texts, attributes, calls = set(), set(), [], []
-        for one in ast.walk(node):
-            if isinstance(one, ast.Name):
-                names.add(one.id)
-            elif isinstance(one, ast.Constant) and isinstance(one.value, str):
-                texts.add(one.value)
-            elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
-                attributes.append((one.value.id, one.attr))
-            elif isinstance(one, ast.Call):
-                calls.append((one.lineno, dotted_name(one.func)))
+        for item in ast.walk(node):
+            if isinstance(item, ast.Name):
+                names.add(item.id)
+            elif isinstance(item, ast.Constant) and isinstance(item.value, str):
+                texts.add(item.value)
+            elif isinstance(item, ast.Attribute) and isinstance(item.value, ast.Name):
+                attributes.append((item.value.id, item.attr))
+            elif isinstance(item, ast.Call):
+                calls.append((item.lineno, dotted_name(item.func)))
         return cls(names, texts, attributes, calls)
 
 
@@ -215,14 +215,14 @@ def readings(path: Path, imports: Imports) -> list[str]:
         waiting: list[Found] = [(file, test), *always]
         seen: dict[Found, None] = dict.fromkeys(waiting)
         while waiting:
-            for one in imports.used_by(*waiting.pop()):
-                if one not in seen:
-                    seen[one] = None
-                    waiting.append(one)
+            for item in imports.used_by(*waiting.pop()):
+                if item not in seen:
+                    seen[item] = None
+                    waiting.append(item)
         asked = [names for _, node in seen for names, fixture in [imports.asked(node)] if fixture or node is test]
         if LIVE_FIXTURES & set().union(*asked):
             continue
-        clocks = set().union(*(imports.clocks_of(*one) for one in seen))
+        clocks = set().union(*(imports.clocks_of(*item) for item in seen))
         found += [
             f"{line if where == path else test.lineno}: {test.name} reads {clock}"
             f"{'' if where == path else f' in {where.name}:{line}'}: {REMEDY}"
@@ -273,7 +273,7 @@ def marks_of(node: ast.expr) -> set[str]:
 
 def decorators(node: Definition) -> str:
     """Return the text of the decorators."""
-    return " ".join(ast.unparse(one) for one in node.decorator_list)
+    return " ".join(ast.unparse(item) for item in node.decorator_list)
 
 
 def is_fixture(node: Part) -> bool:
@@ -283,7 +283,7 @@ def is_fixture(node: Part) -> bool:
 
 def fixture_name(node: Definition) -> str:
     """Return the name of a fixture, which its decorator may give."""
-    words = [word for one in node.decorator_list if isinstance(one, ast.Call) for word in one.keywords]
+    words = [word for item in node.decorator_list if isinstance(item, ast.Call) for word in item.keywords]
     return next((ast.literal_eval(word.value) for word in words if word.arg == "name"), node.name)
 
 
@@ -292,13 +292,13 @@ def asked_by(node: Part) -> set[str]:
     if isinstance(node, ast.Module):
         return set()
     arguments = [] if isinstance(node, ast.ClassDef) else [*node.args.args, *node.args.kwonlyargs]
-    marks = [one for one in node.decorator_list if "usefixtures" in ast.unparse(one)]
-    return {one.arg for one in arguments}.union(*map(texts_of, marks))
+    marks = [item for item in node.decorator_list if "usefixtures" in ast.unparse(item)]
+    return {argument.arg for argument in arguments}.union(*map(texts_of, marks))
 
 
 def texts_of(node: ast.AST) -> set[str]:
     """Return the texts in a part of a file, which may name fixtures, as for ``getfixturevalue``."""
-    return {one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)}
+    return {item.value for item in ast.walk(node) if isinstance(item, ast.Constant) and isinstance(item.value, str)}
 
 
 def full_name(name: str, full: dict[str, str]) -> str:

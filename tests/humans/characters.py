@@ -121,7 +121,7 @@ def character_table(body="woman-36", scheme="mixamo", level=1, without=(), pictu
         "WEIGHTS_0": chunks.array(mesh.weights[corner], FLOAT, "VEC4"),
     }
     inverse = chunks.array(
-        np.array([np.linalg.inv(one).T.ravel() for one in world]).reshape(len(bones), 16), FLOAT, "MAT4"
+        np.array([np.linalg.inv(item).T.ravel() for item in world]).reshape(len(bones), 16), FLOAT, "MAT4"
     )
     indices = chunks.array(np.arange(len(corner)), INT, "SCALAR")
     image = chunks.view(checked_picture() if picture is None else picture)

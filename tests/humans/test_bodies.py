@@ -41,11 +41,11 @@ def test_the_licence_ships_with_the_bodies():
 
 
 def test_everyone_has_at_least_ten_variations():
-    for one in persons():
-        assert len({outfit(one, k) for k in range(12)}) == 12
-        if one.sex:
-            assert len({outfit(one, k).top for k in range(10)}) == 10
-            assert len({outfit(one, k).skin for k in range(12)}) == 1
+    for item in persons():
+        assert len({outfit(item, k) for k in range(12)}) == 12
+        if item.sex:
+            assert len({outfit(item, k).top for k in range(10)}) == 10
+            assert len({outfit(item, k).skin for k in range(12)}) == 1
     assert outfit(person("man-30"), 3) == outfit(person("man-30"), 3)
 
 
@@ -90,8 +90,8 @@ def _line(level, one, other):
 @pytest.mark.parametrize("level", range(LEVELS))
 def test_hems_are_straight_and_clothes_have_no_gap(level):
     body = shapes().levels[level]
-    for one, other, points in (("top", "bottom", 7), ("bottom", "shin", 6), ("shin", "shoes", 6)):
-        line = _line(body, one, other)
+    for item, other, points in (("top", "bottom", 7), ("bottom", "shin", 6), ("shin", "shoes", 6)):
+        line = _line(body, item, other)
         assert len(line) >= points
         assert np.ptp(line) < (0.006 if level == 0 else 0.015)
 

@@ -31,7 +31,7 @@ SCHEMES = ("mixamo", "biped")
 def bodies(tmp_path_factory):
     """Return a body of each naming scheme, made of the same included body."""
     folder = tmp_path_factory.mktemp("bodies")
-    return {one: import_body(character(folder, f"{one}.glb", scheme=one), f"{one}.body").body for one in SCHEMES}
+    return {item: import_body(character(folder, f"{item}.glb", scheme=item), f"{item}.body").body for item in SCHEMES}
 
 
 def pair(body):

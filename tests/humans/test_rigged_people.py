@@ -117,7 +117,7 @@ def test_scans_meet_the_skin_of_the_body(folder):
     scene, motion = standing(folder)
     skins = scene_bodies(scene, motion, skins=2).skins
     points = [skins.vertices[0, np.unique(skins.faces[skins.owner == agent])] for agent in (0, 1)]
-    for one, y in zip(points, (1.0, -1.0), strict=True):
-        assert np.abs(one[:, 1] - y).max() < 0.5
-        assert one[:, 2].max() == pytest.approx(1.53, abs=0.04)
+    for point, y in zip(points, (1.0, -1.0), strict=True):
+        assert np.abs(point[:, 1] - y).max() < 0.5
+        assert point[:, 2].max() == pytest.approx(1.53, abs=0.04)
     assert np.sum(skins.owner == 1) == len(motion.people.own[0].levels[2].faces)

@@ -69,8 +69,10 @@ def crossing(avoid, people=80, rows=300, seed=0):
 
 def test_people_who_do_not_interact_have_no_energy():
     tracks = crossing(avoid=False)
-    found = compute_interaction_energy(tracks, compute_individual_speed(tracks, 1, border="single-sided"), 0.2)
-    near = found.table[(found.table.ttc < 4.0) & (found.table.ttc > 0.3)]
+    interaction_energy = compute_interaction_energy(
+        tracks, compute_individual_speed(tracks, 1, border="single-sided"), 0.2
+    )
+    near = interaction_energy.table[(interaction_energy.table.ttc < 4.0) & (interaction_energy.table.ttc > 0.3)]
     assert near.g.mean() == pytest.approx(1.0, abs=0.1)
     assert np.mean((near.low <= 1.0) & (near.high >= 1.0)) > 0.7
 
@@ -78,28 +80,28 @@ def test_people_who_do_not_interact_have_no_energy():
 def test_people_who_keep_apart_have_energy_at_small_times():
     tracks = crossing(avoid=True)
     velocity = compute_individual_speed(tracks, 1, border="single-sided")
-    found = compute_interaction_energy(tracks, velocity, 0.2)
-    rows = found.table.set_index(found.table.ttc.round(2))
+    interaction_energy = compute_interaction_energy(tracks, velocity, 0.2)
+    rows = interaction_energy.table.set_index(interaction_energy.table.ttc.round(2))
     assert rows.g[0.25] < 0.2 < rows.g[2.95]
-    assert found.exponent == pytest.approx(2.0, abs=0.7)
+    assert interaction_energy.exponent == pytest.approx(2.0, abs=0.7)
     assert rows.high[0.35] < 0.5
-    assert found.strength > 0.0
-    assert found.exponent_low <= found.exponent <= found.exponent_high
+    assert interaction_energy.strength > 0.0
+    assert interaction_energy.exponent_low <= interaction_energy.exponent <= interaction_energy.exponent_high
     same = compute_time_to_collision_distribution(tracks, velocity, 0.2)
     for name in ("ttc", "count", "expected", "g", "energy"):
-        assert found.table[name].to_numpy() == pytest.approx(same[name].to_numpy(), nan_ok=True)
+        assert interaction_energy.table[name].to_numpy() == pytest.approx(same[name].to_numpy(), nan_ok=True)
 
 
 def test_starts_are_pooled():
     parts = [crossing(avoid=True, rows=80, seed=seed) for seed in range(4)]
     tables = [
-        compute_interaction_energy(one, compute_individual_speed(one, 1, border="single-sided"), 0.2).table
-        for one in parts
+        compute_interaction_energy(part, compute_individual_speed(part, 1, border="single-sided"), 0.2).table
+        for part in parts
     ]
     whole = pool_interaction_energy(tables)
-    assert whole.table["count"].to_numpy() == pytest.approx(sum(one["count"].to_numpy() for one in tables))
+    assert whole.table["count"].to_numpy() == pytest.approx(sum(table["count"].to_numpy() for table in tables))
     assert whole.table.g.to_numpy() == pytest.approx(
-        sum(one["count"].to_numpy() for one in tables) / sum(one.expected.to_numpy() for one in tables)
+        sum(table["count"].to_numpy() for table in tables) / sum(table.expected.to_numpy() for table in tables)
     )
     assert whole.exponent == pytest.approx(2.0, abs=1.0)
     with pytest.raises(InputError, match="at least two tables with the same bins"):

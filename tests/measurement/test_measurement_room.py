@@ -123,8 +123,12 @@ def test_people_who_do_not_interact_have_g_of_one():
             rows += [(k + 6 * pair, 2 * pair, x, y), (k + 6 * pair, 2 * pair + 1, x + vx, y + vy)]
     tracks = made(rows)
     speed = measure.compute_individual_speed(tracks, 1, border="single-sided")
-    found = measure.compute_time_to_collision_distribution(tracks, speed, 0.3, bin_size=1.0, longest=6.0)
-    assert found["count"].sum() / found.expected.sum() == pytest.approx(1.0, abs=0.2)
+    time_to_collision_distribution = measure.compute_time_to_collision_distribution(
+        tracks, speed, 0.3, bin_size=1.0, longest=6.0
+    )
+    assert time_to_collision_distribution[
+        "count"
+    ].sum() / time_to_collision_distribution.expected.sum() == pytest.approx(1.0, abs=0.2)
 
 
 def test_hard_discs_have_a_hole_in_the_pair_distribution():

@@ -87,7 +87,7 @@ def test_n_t_and_flow(tracks, speed):
 
 @pytest.mark.filterwarnings("ignore:The copy keyword is deprecated")  # PedPy 1.5 with pandas 3
 def test_line_flow(tracks, cells, speed, species):
-    found = measure.compute_line_flow(tracks, cells, LINE, speed, species)
+    line_flow = measure.compute_line_flow(tracks, cells, LINE, speed, species)
     at_line = {"individual_voronoi_polygons": cells, "measurement_line": PEDPY_LINE, "species": species}
     tables = {
         "density": pedpy.compute_line_density(**at_line),
@@ -97,19 +97,19 @@ def test_line_flow(tracks, cells, speed, species):
     for name, table in tables.items():
         columns = ["frame", *table.columns[1:]]
         assert len(columns) == 4
-        mine = found[found.frame.isin(table.frame)][["frame", f"{name}_sp+1", f"{name}_sp-1", name]]
+        mine = line_flow[line_flow.frame.isin(table.frame)][["frame", f"{name}_sp+1", f"{name}_sp-1", name]]
         same(mine.set_axis(columns, axis=1), table.fillna(0.0), columns)
 
 
 def test_density_profile(tracks, cells, speed):
-    found = measure.compute_profiles(measure.Grid.over(HALL, GRID), cells, speed)
+    profiles = measure.compute_profiles(measure.Grid.over(HALL, GRID), cells, speed)
     frames = pedpy.compute_density_profile(
         data=cells,
         walkable_area=pedpy.WalkableArea(CORNERS, obstacles=[PILLAR]),
         grid_size=GRID,
         density_method=pedpy.DensityMethod.VORONOI,
     )
-    np.testing.assert_allclose(found.density, np.mean(frames, axis=0).ravel(), rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(profiles.density, np.mean(frames, axis=0).ravel(), rtol=1e-9, atol=1e-12)
 
 
 def test_area_and_passages_are_those_of_pedpy(tracks):

@@ -189,5 +189,7 @@ def test_a_viewer_gets_a_body_for_each_agent_in_distinct_colours() -> None:
     shown = Messages().decode_message(
         markers(0, scene, np.array([7, 8, 9]), [(1.0, 2.0, 0.3)]), "visualization_msgs/msg/MarkerArray"
     )
-    colours = {tuple(round(part, 2) for part in (one.color.r, one.color.g, one.color.b)) for one in shown.markers}
+    colours = {
+        tuple(round(part, 2) for part in (marker.color.r, marker.color.g, marker.color.b)) for marker in shown.markers
+    }
     assert {(0.9, 0.6, 0.0), (0.0, 0.45, 0.7), (0.0, 0.62, 0.45)} <= colours

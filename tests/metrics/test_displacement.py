@@ -15,12 +15,12 @@ from crowdbot.metrics import ade, best_of, distances, error_over_horizon, fde, m
 
 def slow_errors(forecast: Forecast, future: Windows, w: int, k: int, a: int) -> list[tuple[int, float]]:
     """Step and distance of every step that counts, in plain Python."""
-    found = []
+    result = []
     for t in range(forecast.steps):
         if future.present[w, t, a] and future.scored[w, a]:
             dx, dy = (forecast.position[w, k, t, a] - future.position[w, t, a]).tolist()
-            found.append((t, math.hypot(dx, dy)))
-    return found
+            result.append((t, math.hypot(dx, dy)))
+    return result
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -117,7 +117,7 @@ def test_samples_that_weigh_nothing_count_nowhere(seed: int, rule: str) -> None:
     forecast, future = case(seed, K=6)
     forecast = weighted(forecast, seed)
     padded = person_errors(forecast, future, rule)
-    parts = [person_errors(*one, rule) for one in without_padding(forecast, future)]
+    parts = [person_errors(*item, rule) for item in without_padding(forecast, future)]
     for name in ("ade", "fde", "distance", "collided", "true_collided", "nll", "energy"):
         apart = np.concatenate([getattr(part, name) for part in parts])
         np.testing.assert_allclose(getattr(padded, name), apart, atol=1e-12, err_msg=name)

@@ -28,7 +28,7 @@ def test_one_person_and_nobody_have_the_classic_density():
 def test_people_on_a_lattice_have_its_density():
     lattice = np.array([*itertools.product(np.arange(-8.0, 8.0, 0.8), repeat=2)])
     assert voronoi_density(np.array([0.13, 0.31]), lattice) == pytest.approx(1 / 0.8**2, rel=2e-3)
-    log = log_of_paths(walk((0, 0), (0, 0), 2), *(walk(one, (0, 0), 2) for one in lattice))
+    log = log_of_paths(walk((0, 0), (0, 0), 2), *(walk(item, (0, 0), 2) for item in lattice))
     found = log_metrics(log, ["density"])
     assert found["voronoi_density"] == pytest.approx(1 / 0.8**2, rel=2e-3)
     assert found["max_voronoi_density"] == pytest.approx(found["voronoi_density"])
@@ -41,8 +41,8 @@ def test_voronoi_density_counts_points_of_a_grid(seed):
     h = 0.02
     points = np.array([*itertools.product(np.arange(-8, 8, h), repeat=2)])
     best, owner = np.full(len(points), 2.5), np.full(len(points), -1)
-    for k, one in enumerate(people):
-        away = np.hypot(*(points - one).T)
+    for k, person in enumerate(people):
+        away = np.hypot(*(points - person).T)
         owner[away < best], best = k, np.minimum(best, away)
     inside = np.hypot(*(points - place).T) < 2.5
     whole, part = (np.bincount(owner[rows & (owner >= 0)], minlength=len(people)) for rows in (True, inside))

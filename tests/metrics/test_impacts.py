@@ -44,7 +44,11 @@ def test_impacts_of_a_run_are_those_of_its_contact_events(tmp_path) -> None:
     trial = dataclasses.replace(parse_trial(room("physics", LEAN)), duration=3.0)
     episode = run(trial, 0, out=tmp_path)
     robot = trial.people
-    own = [one for one in episode.collisions if one.first == ("robot", robot) and one.second.kind == "person"]
+    own = [
+        collision
+        for collision in episode.collisions
+        if collision.first == ("robot", robot) and collision.second.kind == "person"
+    ]
     assert {name: episode.metrics[name] for name in IMPACT_METRICS} == pytest.approx(impact_metrics(own))
     recorded = read_episode(tmp_path / "episode.mcap")
     assert {name: recorded.metrics[name] for name in IMPACT_METRICS} == {

@@ -28,7 +28,7 @@ def test_points_between_rows_equal_a_slow_twin(seed: int, neighbors: str) -> Non
         if t + 1 < T and there[t + 1, a] and there[t + 1, b]:
             own = (forecast.position[w, k, t, a] + forecast.position[w, k, t + 1, a]) / 2
             points.append((own, (others[t, b] + others[t + 1, b]) / 2))
-        slow[w, k, a] |= any(math.dist(one, other) < 0.4 for one, other in points)
+        slow[w, k, a] |= any(math.dist(item, other) < 0.4 for item, other in points)
     assert np.array_equal(collision_mask(forecast, future, 0.4, neighbors, parts=2), slow)
     assert slow.sum() >= collision_mask(forecast, future, 0.4, neighbors).sum()
 

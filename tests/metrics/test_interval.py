@@ -13,7 +13,7 @@ from crowdbot.metrics import bootstrap_interval, corrected_interval, draw_counts
 def slow_interval(values: np.ndarray, person: np.ndarray, resamples: int, level: float, seed: int) -> list[float]:
     """Draw people one by one, put all their windows in a list, and take the mean of the list."""
     people = sorted(set(person.tolist()))
-    windows = {one: [value for value, own in zip(values, person, strict=True) if own == one] for one in people}
+    windows = {item: [value for value, own in zip(values, person, strict=True) if own == item] for item in people}
     drawn = stream(seed, "bootstrap").integers(0, len(people), (resamples, len(people)))
     means = []
     for row in drawn:

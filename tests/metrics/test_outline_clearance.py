@@ -104,8 +104,8 @@ def test_a_recording_keeps_the_outline(tmp_path):
     trial = parse_trial(text.replace("<robot ", '<robot type="turtlebot2" default-sensors="false" ', 1))
     episode = run(trial, 0, out=tmp_path)
     recorded = read_episode(tmp_path / "episode.mcap")
-    for one in (episode, recorded):
-        assert np.array_equal(one.footprints[0], trial.robots[0].body.footprint)
+    for item in (episode, recorded):
+        assert np.array_equal(item.footprints[0], trial.robots[0].body.footprint)
     assert repr(dict(recorded.metrics)) == repr(dict(episode.metrics))
 
 

@@ -36,9 +36,9 @@ def test_a_robot_that_stands_has_no_time():
 def test_a_disc_in_small_steps_needs_the_same_time():
     rng = stream(5)
     points, velocity = rng.uniform(-4.0, 4.0, (40, 12, 2)), rng.uniform(-1.5, 1.5, (40, 2))
-    found = scan_time_to_collision(points, velocity, 0.4, 3.0)
+    time_to_collision = scan_time_to_collision(points, velocity, 0.4, 3.0)
     steps = np.arange(0.0, 3.0, 1e-3)
     for k in range(40):
         away = np.linalg.norm(points[k][None] - steps[:, None, None] * velocity[k], axis=-1).min(axis=1)
         touched = steps[away <= 0.4]
-        assert found[k] == pytest.approx(touched[0] if len(touched) else 3.0, abs=2e-3)
+        assert time_to_collision[k] == pytest.approx(touched[0] if len(touched) else 3.0, abs=2e-3)

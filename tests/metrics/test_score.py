@@ -129,9 +129,9 @@ def test_a_table_has_the_columns_that_have_something_to_say() -> None:
     assert "95 %" not in alone.columns
     assert sampled.columns == (*plain.columns[:5], "NLL", "energy", *plain.columns[5:])
     assert Score.heads([alone, sampled]) == sampled.columns
-    for one in (plain, alone, sampled):
-        assert len(one.cells()) == len(one.columns)
-        assert len(one.cells(sampled.columns)) == len(sampled.columns)
+    for item in (plain, alone, sampled):
+        assert len(item.cells()) == len(item.columns)
+        assert len(item.cells(sampled.columns)) == len(sampled.columns)
     assert alone.cells(sampled.columns) == ("1", "1", "0.500", "-", "0.500", "-", "0.500", "-", "-")
     assert scored([0.5], units="px").columns[2:4] == ("ADE [px]", "FDE [px]")
 

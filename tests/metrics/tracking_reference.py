@@ -46,7 +46,7 @@ def main():
     rows = []
     for seed in SEEDS:
         table = made_table(seed)
-        people, tracks = (~np.isnan(one[..., 0]) for one in (table.truth, table.estimate))
+        people, tracks = (~np.isnan(item[..., 0]) for item in (table.truth, table.estimate))
         accumulator = motmetrics.MOTAccumulator(auto_id=True)
         distances = table.distances()
         data = {"gt_ids": [], "tracker_ids": [], "similarity_scores": []}

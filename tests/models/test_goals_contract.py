@@ -91,8 +91,8 @@ def test_renumbering_and_padding(kind, seed, order):
         )
 
     other = at(list(order))
-    for one, two in zip(answers(made(kind, past), past), answers(made(kind, other), other), strict=True):
-        assert one[:, order] == pytest.approx(two, abs=1e-7)
+    for answer, two in zip(answers(made(kind, past), past), answers(made(kind, other), other), strict=True):
+        assert answer[:, order] == pytest.approx(two, abs=1e-7)
     empty = np.zeros((4, 8, 3), dtype=bool)
     padded = dataclasses.replace(
         past,
@@ -103,8 +103,8 @@ def test_renumbering_and_padding(kind, seed, order):
             for name in ("scored", "robot", "id")
         },
     )
-    for one, two in zip(answers(made(kind, past), past), answers(made(kind, padded), padded), strict=True):
-        assert one == pytest.approx(two[:, :6], abs=1e-7)
+    for answer, two in zip(answers(made(kind, past), past), answers(made(kind, padded), padded), strict=True):
+        assert answer == pytest.approx(two[:, :6], abs=1e-7)
 
 
 @every_goal

@@ -220,8 +220,8 @@ def test_windows_of_another_time_step_are_interpolated():
     slow = windows(fast.position[:, ::4], dt=0.4)
     assert np.allclose(goal.velocity(fast), goal.velocity(slow), atol=1e-9)
     assert np.allclose(goal.resolve(fast), goal.resolve(slow), atol=1e-6)
-    for one, other in zip(*(vars(goal.choices(past)).values() for past in (fast, slow)), strict=True):
-        assert np.allclose(one, other, atol=1e-6)
+    for item, other in zip(*(vars(goal.choices(past)).values() for past in (fast, slow)), strict=True):
+        assert np.allclose(item, other, atol=1e-6)
 
 
 def test_people_observed_for_less_than_the_time_step_of_the_goal_have_a_velocity():

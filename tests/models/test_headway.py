@@ -25,7 +25,7 @@ BASES = [
 
 def file(*x: float, speed: float = 0.0, wish: float = 1.3, radius: float = 0.2) -> Scene:
     """Return people behind each other on the x axis, who walk along it."""
-    places = [(one, 0.0) for one in x]
+    places = [(item, 0.0) for item in x]
     return Scene.of(
         places, [(speed, 0.0)] * len(x), radius=radius, preferred_speed=wish, preferred_velocity=[(wish, 0.0)] * len(x)
     )

@@ -73,10 +73,10 @@ def best_by_trying(lines, speed, wish):
         half2 = speed**2 - foot @ foot
         if half2 >= 0.0:
             points += [foot + np.sqrt(half2) * u, foot - np.sqrt(half2) * u, q + ((wish - q) @ u) * u]
-    for one, two in itertools.combinations(lines, 2):
-        matrix = np.stack([one[2:], -two[2:]], axis=1)
+    for item, two in itertools.combinations(lines, 2):
+        matrix = np.stack([item[2:], -two[2:]], axis=1)
         if abs(np.linalg.det(matrix)) > 1e-9:
-            points.append(one[:2] + np.linalg.solve(matrix, two[:2] - one[:2])[0] * one[2:])
+            points.append(item[:2] + np.linalg.solve(matrix, two[:2] - item[:2])[0] * item[2:])
     allowed = [p for p in points if np.hypot(*p) <= speed + 1e-9 and left_of(lines, p) <= 1e-9]
     return min(allowed, key=lambda p: np.hypot(*(p - wish)), default=None)
 

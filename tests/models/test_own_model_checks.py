@@ -42,10 +42,10 @@ def move_absent(scene: Scene, rng: np.random.Generator | None) -> np.ndarray:
 
 
 def write(scene: Scene, rng: np.random.Generator | None) -> np.ndarray:
-    found = walk(scene)
+    result = walk(scene)
     scene.position.flags.writeable = True
     scene.position[...] += 1.0
-    return found
+    return result
 
 
 def mix_environments(scene: Scene, rng: np.random.Generator | None) -> np.ndarray:
@@ -127,9 +127,9 @@ def stay(past: Windows) -> np.ndarray:
 
 
 def spoil(past: Windows) -> np.ndarray:
-    found = stay(past).copy()
+    result = stay(past).copy()
     past.position[...] += 1.0
-    return found
+    return result
 
 
 def weigh(factor: float) -> Callable[[Windows], Choices]:

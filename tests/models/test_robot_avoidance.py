@@ -116,7 +116,7 @@ def test_a_batch_equals_its_environments():
 def test_people_differ_in_caution_and_the_draw_is_reproducible():
     model = People(robot_gap=0.8, robot_horizon=4.0, robot_caution=0.3)
     drawn = [model.individual(2000, np.random.default_rng(seed)) for seed in (1, 1, 2)]
-    gaps = [one.robot_gap for one in drawn]
+    gaps = [item.robot_gap for item in drawn]
     assert np.array_equal(gaps[0], gaps[1])
     assert not np.array_equal(gaps[0], gaps[2])
     assert np.median(gaps[0]) == pytest.approx(0.8, abs=0.03)

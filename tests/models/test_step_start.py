@@ -70,8 +70,8 @@ def test_values_of_absent_agents_are_arbitrary():
     for value in wild.values():
         value[gone] = np.nan
     first, second = begin_step(scene, 0.1), begin_step(scene.replace(**wild), 0.1)
-    for one, other in zip(first, second, strict=True):
-        np.testing.assert_array_equal(one, other)
+    for item, other in zip(first, second, strict=True):
+        np.testing.assert_array_equal(item, other)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1.1e9, -1.1e9])

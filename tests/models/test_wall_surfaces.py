@@ -18,7 +18,7 @@ def felt(walls, x, y, reach=100.0):
     """Return distance and normal of every surface that is felt at x, y, nearest first."""
     surfaces = wall_surfaces(Walls.of(walls))
     all_ = [surface_distance(*surfaces, k, x, y, reach) for k in range(len(surfaces.face) + len(surfaces.corner))]
-    return sorted(one for one in all_ if one[0] < math.inf)
+    return sorted(item for item in all_ if item[0] < math.inf)
 
 
 def test_a_joint_is_felt_once():

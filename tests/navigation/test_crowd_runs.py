@@ -30,6 +30,6 @@ def test_a_run_repeats_and_does_not_depend_on_its_neighbours():
     together = run(ORCANavigator(), range(3), limit=4.0)
     again = run(ORCANavigator(), range(3), limit=4.0)
     alone = run(ORCANavigator(), [2], limit=4.0)
-    for one, two in zip(together, again, strict=True):
-        np.testing.assert_equal(one, two)
+    for item, two in zip(together, again, strict=True):
+        np.testing.assert_equal(item, two)
     np.testing.assert_equal(alone[0], together[2])

@@ -37,6 +37,6 @@ def test_memory_starts_once_and_goes_on_from_decision_to_decision():
 
 def test_a_branch_and_a_batch_keep_the_memory():
     whole = run(trial())
-    assert [one.digest for one in simulate_seeds(trial(), [0, 0, 0])] == [whole.digest] * 3
+    assert [seed.digest for seed in simulate_seeds(trial(), [0, 0, 0])] == [whole.digest] * 3
     assert branch(whole, 1.0).digest == whole.digest
     assert run(trial()).digest == whole.digest

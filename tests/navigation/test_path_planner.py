@@ -89,11 +89,11 @@ def test_a_goal_in_sight_changes_no_bit(navigator):
     walls = Walls.of([[(-8.0, -4.0), (8.0, -4.0)], [(-8.0, 4.0), (8.0, 4.0)]])
     place, goal = rng.uniform(-3, 3, (20, 2)), rng.uniform(-3, 3, (20, 2))
     scene = Scene.of(place[:, None], heading=rng.uniform(-3, 3, (20, 1)), goal=goal[:, None], radius=0.3, walls=walls)
-    found = PathPlanner.of(walls, 0.3).next_waypoints(place, goal)
-    np.testing.assert_array_equal(found.point, goal)
+    next_waypoints = PathPlanner.of(walls, 0.3).next_waypoints(place, goal)
+    np.testing.assert_array_equal(next_waypoints.point, goal)
     limits, twist = DriveLimits(1.0, 1.5, 1.0, 3.0), np.tile([0.5, 0.1, 0.0], (20, 1))
     plain = ObservationBatch.of(scene, 0, limits, dt=0.1, twist=twist)
-    planned = ObservationBatch.of(scene, 0, limits, dt=0.1, twist=twist, waypoint=found.point)
+    planned = ObservationBatch.of(scene, 0, limits, dt=0.1, twist=twist, waypoint=next_waypoints.point)
     twists = [navigator.decide_batch(batch, [None] * 20).twist for batch in (plain, planned)]
     np.testing.assert_array_equal(*twists)
     arrivals = [drive(navigator, "differential", place[:4], goal[:4], walls, plan) for plan in (False, True)]
@@ -125,14 +125,14 @@ def test_a_robot_that_left_its_path_gets_another():
 def test_a_robot_without_a_path_fails_alone():
     planner = PathPlanner.of([*L_ROOM, [(4.0, 0.0), (4.0, 4.0)]], 0.3)
     place, goal = np.array([[9.0, 2.0], [1.0, 1.0], [math.nan, 0.0]]), np.array([[0.8, 9.0], [0.8, 9.0], [1.0, 1.0]])
-    found = planner.next_waypoints(place, goal)
-    assert sorted(found.failures) == [0, 2]
-    assert "cannot be reached from (9, 2) by a body of radius 0.4 m" in str(found.failures[0])
-    assert "not finite" in str(found.failures[2])
-    assert np.all(np.isnan(found.point[[0, 2]]))
-    np.testing.assert_array_equal(found.point[1], planner.waypoints((1.0, 1.0), (0.8, 9.0))[0])
-    again = planner.next_waypoints(place, goal, found.path)
-    np.testing.assert_array_equal(again.point, found.point)
+    next_waypoints = planner.next_waypoints(place, goal)
+    assert sorted(next_waypoints.failures) == [0, 2]
+    assert "cannot be reached from (9, 2) by a body of radius 0.4 m" in str(next_waypoints.failures[0])
+    assert "not finite" in str(next_waypoints.failures[2])
+    assert np.all(np.isnan(next_waypoints.point[[0, 2]]))
+    np.testing.assert_array_equal(next_waypoints.point[1], planner.waypoints((1.0, 1.0), (0.8, 9.0))[0])
+    again = planner.next_waypoints(place, goal, next_waypoints.path)
+    np.testing.assert_array_equal(again.point, next_waypoints.point)
     with pytest.raises(InputError, match="PathPlanner: no path: Router: the goal"):
         planner.waypoints((9.0, 2.0), (0.8, 9.0))
 

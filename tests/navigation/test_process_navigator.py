@@ -119,7 +119,7 @@ def test_a_run_is_that_of_the_navigator_in_this_process(mine: str, sandbox: bool
     trial = load_trial("crossing-flows", duration="3")
     apart = with_navigator(trial, ProcessNavigator(address=f"{mine}:Counter", sandbox=sandbox))
     here = [simulate(with_navigator(trial, own_counter(mine)), seed).digest for seed in (0, 1)]
-    assert [one.digest for one in simulate_seeds(apart, [0, 1])] == here
+    assert [seed.digest for seed in simulate_seeds(apart, [0, 1])] == here
 
 
 @pytest.mark.program

@@ -38,10 +38,10 @@ def grow(seed, environments=4, steps=9, length=4, people=6):
 def test_each_history_has_the_bits_of_a_single_one(seed, length, people):
     batch, alone = grow(seed, length=length, people=people)
     assert all(same(batch[e], alone[e]) for e in range(4))
-    assert all(same(one, other) for one, other in zip(batch, alone, strict=True))
+    assert all(same(item, other) for item, other in zip(batch, alone, strict=True))
     again = TrackBatch.of(alone)
     assert all(same(again[e], alone[e]) for e in range(4))
-    assert batch.valid.sum() == sum(int((~np.isnan(one.position[..., 0])).sum()) for one in alone)
+    assert batch.valid.sum() == sum(int((~np.isnan(item.position[..., 0])).sum()) for item in alone)
 
 
 @settings(max_examples=30, deadline=None)

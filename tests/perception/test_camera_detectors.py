@@ -85,8 +85,8 @@ def test_far_people_are_left_out_and_people_hide_what_is_behind():
 
 def test_boxes_that_overlap_a_stronger_one_are_left_out():
     rows = np.array([[0, 0, 10, 20], [1, 0, 11, 20], [50, 0, 60, 20.0], [80, 0, 90, 20]])
-    found = select_boxes(rows, np.array([0.9, 0.8, 0.7, 0.1]), 0.5)
-    assert found.box[:, 0].tolist() == [0, 50]
+    boxes = select_boxes(rows, np.array([0.9, 0.8, 0.7, 0.1]), 0.5)
+    assert boxes.box[:, 0].tolist() == [0, 50]
 
 
 def test_hog_finds_nobody_in_an_empty_or_a_tiny_image():

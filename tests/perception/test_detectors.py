@@ -74,7 +74,7 @@ class TestContract:
         assert found.coverage.visible([[2.0, -0.2], [5.0, -0.2], [0.0, 3.0]]).tolist() == [1.0, 0.0, 1.0]
 
     def test_other_readings_and_several_environments_are_rejected(self, kind):
-        other = next(one for one in SENSORS if one not in kind.reads)
+        other = next(item for item in SENSORS if item not in kind.reads)
         reading = reading_of(next(d() for d in DETECTORS.values() if other in d.reads), PLACES)
         with pytest.raises(InputError, match=f"the reading is a {other.__name__}, it must be a"):
             kind().detect(reading)

@@ -106,7 +106,7 @@ def test_earlier_tracks_of_a_second_are_kept():
     for scan in scans_of(30):
         state = scene.update(scan, state)
     assert isinstance(state, LearnedState)
-    times = [one.time for one in state.earlier]
+    times = [item.time for item in state.earlier]
     assert times[-1] == pytest.approx(2.9)
     assert 1.0 <= times[-1] - times[0] <= 1.11
 

@@ -42,7 +42,7 @@ def future(people=walk, pose=robot):
 
 def poses(pose=robot):
     known = [pose(1.5 + ahead) for ahead in AHEAD]
-    return Pose(np.concatenate([one.position for one in known]), np.concatenate([one.heading for one in known]))
+    return Pose(np.concatenate([item.position for item in known]), np.concatenate([item.heading for item in known]))
 
 
 @pytest.mark.parametrize("kind", PREDICTORS.values(), ids=PREDICTORS)

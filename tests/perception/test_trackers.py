@@ -52,9 +52,9 @@ class TestContract:
         follow(kind(), seen[20:] + 3.0, state, 20)  # another future from the same state
         branch, _ = follow(kind(), seen[20:], state, 20)
         assert all(np.array_equal(getattr(state, name), getattr(kept, name), equal_nan=True) for name in vars(kept))
-        for one, other in zip(branch, whole[20:], strict=True):
-            assert np.array_equal(one.position, other.position)
-            assert np.array_equal(one.covariance, other.covariance)
+        for item, other in zip(branch, whole[20:], strict=True):
+            assert np.array_equal(item.position, other.position)
+            assert np.array_equal(item.covariance, other.covariance)
 
     def test_covariances_are_positive_and_grow_without_detections(self, kind):
         _, seen = two_walkers()

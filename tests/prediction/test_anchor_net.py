@@ -124,7 +124,7 @@ def test_joint_futures_are_everyones_own_in_another_order(windows: Maker) -> Non
     past = walking(windows, (0.0, 0.0, 1.3, 0.0), (0.0, 30.0, 1.3, 0.2), (4.0, 0.05, -1.3, 0.0))
     own = AnchorNet(contact=0.0).predict(past, 12, 20).position[0]
     joint = AnchorNet().predict(past, 12, 20).position[0]
-    far, also_far = (np.array(sorted(one[:, :, 1].reshape(20, -1).tolist())) for one in (own, joint))
+    far, also_far = (np.array(sorted(item[:, :, 1].reshape(20, -1).tolist())) for item in (own, joint))
     assert np.array_equal(far, also_far)
     away = np.linalg.norm(own[:, None] - joint[None], axis=-1).max(axis=2).min(axis=1)
     assert np.all(away < 0.3)

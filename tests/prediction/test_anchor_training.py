@@ -197,8 +197,8 @@ def test_windows_of_any_recording_give_the_same_people(
     plain, both = training_set_of(samples, reverse=False), training_set_of(samples)
     forward = training_set([recorded("biwi_hotel")], reverse=False)
     assert (len(plain), len(both)) == (1197, 2 * 1197)
-    for one, other in ((plain.ahead, forward.ahead), (plain.people.past, forward.people.past)):
-        rows = [np.unique(array.reshape(len(array), -1).round(6), axis=0) for array in (one, other)]
+    for item, other in ((plain.ahead, forward.ahead), (plain.people.past, forward.people.past)):
+        rows = [np.unique(array.reshape(len(array), -1).round(6), axis=0) for array in (item, other)]
         assert np.array_equal(*rows)
     assert plain.people.there.sum() == forward.people.there.sum()
 

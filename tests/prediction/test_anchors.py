@@ -57,7 +57,7 @@ def test_fewer_samples_are_the_likeliest_and_more_are_not_made_up() -> None:
 def test_what_is_missed_is_seen_from_the_person() -> None:
     missed = residuals(*turners())
     assert missed.shape == (60, 12, 2)
-    ends = {tuple(np.round(one, 3)) for one in missed[:, -1]}
+    ends = {tuple(np.round(item, 3)) for item in missed[:, -1]}
     back, aside = round(6 * math.cos(0.5) - 6, 3), round(6 * math.sin(0.5), 3)
     assert ends == {(0.0, 0.0), (back, aside), (back, -aside)}
 

@@ -16,7 +16,7 @@ CHECKPOINT = Path(__file__).parent / "data" / "first-version" / "anchor-net" / "
 
 @pytest.fixture(scope="module")
 def past():
-    frame, ids = (one.ravel() for one in np.meshgrid(np.arange(20), np.arange(3), indexing="ij"))
+    frame, ids = (item.ravel() for item in np.meshgrid(np.arange(20), np.arange(3), indexing="ij"))
     return Trajectories(ids, frame, 0.4 * frame + ids, 1.0 * ids, 2.5).windows()[0]
 
 

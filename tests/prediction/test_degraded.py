@@ -65,7 +65,7 @@ def _slow(past, future, degraded, carry):
         degraded.tracks.frame, degraded.tracks.id, degraded.tracks.position, degraded.truth, strict=True
     ):
         rows[int(f), int(i)] = (p, int(who))
-    found = []
+    slow = []
     for w in range(len(past)):
         frames = past.frame[w].tolist()
         members = {int(past.id[w, a]): a for a in np.flatnonzero(past.present[w, -1])}
@@ -84,8 +84,8 @@ def _slow(past, future, degraded, carry):
             track = [rows.get((f, i), (None,))[0] for f in frames]
             scored = who != GHOST and bool(future.scored[w, members[who]])
             window[i] = (track, members.get(who), scored)
-        found.append(window)
-    return found
+        slow.append(window)
+    return slow
 
 
 @pytest.mark.parametrize("carry", [0, 2])
@@ -217,12 +217,12 @@ def test_two_recordings_count_together(recorded):
         [hotel, zara], [MissingFrames()], [ConstantVelocity()], [0.3], DegradedTask(draws=2)
     )
     alone = [
-        next(sweep_degradations([one], [MissingFrames()], [ConstantVelocity()], [0.3], DegradedTask(draws=2)))[0]
-        for one in (hotel, zara)
+        next(sweep_degradations([item], [MissingFrames()], [ConstantVelocity()], [0.3], DegradedTask(draws=2)))[0]
+        for item in (hotel, zara)
     ]
-    assert both.asked == sum(one.asked for one in alone)
-    assert both.score.persons == sum(one.score.persons for one in alone)
-    mean = sum(one.score.ade * one.score.persons for one in alone) / both.score.persons
+    assert both.asked == sum(item.asked for item in alone)
+    assert both.score.persons == sum(item.score.persons for item in alone)
+    mean = sum(item.score.ade * item.score.persons for item in alone) / both.score.persons
     assert both.score.ade == pytest.approx(mean)
     assert both.coverage == pytest.approx(0.7, abs=0.03)
     assert both.score.source == "biwi_hotel.txt + crowds_zara01.txt"

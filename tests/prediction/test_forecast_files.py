@@ -241,7 +241,7 @@ def test_a_file_of_another_method_is_scored_by_scenes(tmp_path: Path, capsys: py
     ("wrong", "words"),
     [
         (lambda lines: lines[1:], "rows have scene_id 0, but there is no such scene"),
-        (lambda lines: [one for one in lines if one.get("track", {}).get("p") != 1], "has no predicted rows of its"),
+        (lambda lines: [line for line in lines if line.get("track", {}).get("p") != 1], "has no predicted rows of its"),
         (lambda lines: [lines[0], lines[1] | {"track": lines[1]["track"] | {"x": float("nan")}}, *lines[2:]],
          "column x has a number that is not finite"),
         (lambda lines: [*lines[:-1]], "person 1 has 23 rows after frame 110, not 2 samples of 12 rows"),

@@ -107,13 +107,13 @@ def test_a_query_with_a_plan_changes_no_later_forecast() -> None:
     def forecasts(ask: bool) -> list[np.ndarray]:
         crowd = Simulated(cost="absolute", search="random-search", budget=20, substep=0.4)
         live = Live(crowd, dt=0.4, observe=4)
-        found = []
+        result = []
         for row in range(6):
             live.update([5, 9], [[0.4 * row, 0.1 * row], [6.0 - 0.3 * row, 0.0]], robots=[9])
             if ask:
                 live.predict(3, plans={9: [[4.0, 1.0], [3.0, 2.0]]})
-            found.append(live.predict(3).position)
-        return found
+            result.append(live.predict(3).position)
+        return result
 
     for plain, asked in zip(forecasts(False), forecasts(True), strict=True):
         np.testing.assert_array_equal(plain, asked)

@@ -22,7 +22,7 @@ def frames(rate: float = 10.0, seconds: float = 4.0) -> list[Frame]:
     """Five people: one is hidden for a while, one comes late, one jumps; with covariances and radii."""
     rng = stream(7, "frames")
     start, velocity = rng.uniform(-8.0, 8.0, (5, 2)), rng.normal(0.0, 0.8, (5, 2))
-    found = []
+    result = []
     for row in range(round(seconds * rate)):
         now = row / rate + float(rng.uniform(-0.02, 0.02))
         place = start + velocity * now + rng.normal(0.0, 0.01, (5, 2))
@@ -31,11 +31,11 @@ def frames(rate: float = 10.0, seconds: float = 4.0) -> list[Frame]:
         size = np.where(rng.random(5) < 0.5, rng.uniform(0.2, 0.3, 5), np.nan)
         spread = rng.uniform(0.01, 0.05, 5)[:, None, None] * np.eye(2)
         who = [int(number) for number in 10 * np.flatnonzero(here)]
-        found.append(
+        result.append(
             {"ids": who, "position": place[here], "robots": [30] if row % 5 == 0 else [], "time": 1.79e9 + now,
              "covariances": spread[here] if row % 3 else None, "radii": size[here]}
         )  # fmt: skip
-    return found
+    return result
 
 
 def fed(predictor: Predictor, rows: Iterable[Frame], dt: float = 0.4, **options: Any) -> Live:
@@ -45,13 +45,13 @@ def fed(predictor: Predictor, rows: Iterable[Frame], dt: float = 0.4, **options:
     return live
 
 
-def assert_same(one: Live, other: Live) -> None:
+def assert_same(live: Live, other: Live) -> None:
     """Everything that two streams tell is equal to the bit."""
-    assert one.ids.tolist() == other.ids.tolist()
-    a, b = one.past(), other.past()
+    assert live.ids.tolist() == other.ids.tolist()
+    a, b = live.past(), other.past()
     for name in ("position", "present", "robot", "id", "frame", "radius"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name), err_msg=name)
-    c, d = one.predict(12, 3), other.predict(12, 3)
+    c, d = live.predict(12, 3), other.predict(12, 3)
     for name in ("position", "weight", "existence", "covariance"):
         np.testing.assert_array_equal(getattr(c, name), getattr(d, name), err_msg=name)
 

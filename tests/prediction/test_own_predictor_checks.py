@@ -39,9 +39,9 @@ def shift(past: Windows, off: np.ndarray | float) -> Forecast:
 
 
 def spoil(past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Forecast:
-    found = still(past, steps, samples, rng)
+    forecast = still(past, steps, samples, rng)
     past.position[0, 0, 0, 0] += 1.0
-    return found
+    return forecast
 
 
 class Chance:

@@ -175,10 +175,10 @@ def test_the_fit_finds_the_coefficients_of_a_known_reaction(windows: Maker, tmp_
             scored=~past.robot,
         )  # fmt: skip
         groups.append(ReactionSamples.of(net, past, future, KNOWN.room))
-    found = fit_reaction(groups, KNOWN.room)
-    for one, other in zip(found[:3], KNOWN[:3], strict=True):
+    reaction = fit_reaction(groups, KNOWN.room)
+    for one, other in zip(reaction[:3], KNOWN[:3], strict=True):
         np.testing.assert_allclose(one, other, atol=0.06)
-    left = sum(np.abs(group.missed - group.displacements(found)).sum() for group in groups)
+    left = sum(np.abs(group.missed - group.displacements(reaction)).sum() for group in groups)
     assert left < 0.05 * sum(np.abs(group.missed).sum() for group in groups)
 
 

@@ -71,7 +71,7 @@ def test_some_scenes_can_be_chosen(two: Samples) -> None:
 )  # fmt: skip
 def test_scenes_are_left_out_by_name(files: dict[str, Recording], name: str, out: list[str]) -> None:
     kept, left = leave_out([*files.values()], name)
-    assert [Path(one.path).stem for one in left] == out
+    assert [Path(item.path).stem for item in left] == out
     assert len(kept) == 8 - len(out)
 
 
@@ -108,7 +108,7 @@ def test_recordings_too_short_to_cut_are_used_whole(tmp_path: Path) -> None:
         file.write_text("".join(f"{10 * t} 1 {t} 0\n" for t in range(rows)))
         every.append(Recording(str(file), fps=25))
     kept, left = recordings_with_windows(every)
-    assert [one.name for one in left] == ["a.txt"]
+    assert [item.name for item in left] == ["a.txt"]
     split = split_in_time(kept, 0.25)
     assert split.whole_validation == ("e.txt", "i.txt")
     assert split.whole_training == tuple(f"{name}.txt" for name in "bcdfghj")

@@ -246,10 +246,10 @@ def test_scenes_run_backwards_keep_who_is_known() -> None:
     scenes = samples.batch(np.arange(5))
     config = dataclasses.replace(TINY, reverse=True, mirror=True, scale_sd=0.2)
     turned = [augment(scenes, 8, config, stream(seed, "a")) for seed in range(8)]
-    ratios = [float(np.ptp(one.position[0, :, 0, 0]) / np.ptp(scenes.position[0, :, 0, 0])) for one in turned]
+    ratios = [float(np.ptp(item.position[0, :, 0, 0]) / np.ptp(scenes.position[0, :, 0, 0])) for item in turned]
     assert len(set(np.round(ratios, 6))) == 8
     assert all(0.4 <= ratio <= 2.5 for ratio in ratios)
-    assert all(np.array_equal(one.scored, scenes.scored) for one in turned)
+    assert all(np.array_equal(item.scored, scenes.scored) for item in turned)
 
 
 def test_wrong_settings_are_said(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,11 +72,11 @@ def test_a_robot_without_a_plan_gives_way_and_one_with_a_plan_does_not(samples: 
     if samples == 1:
         np.testing.assert_array_equal(free[..., 0, :], alone[..., 0, :])
         assert np.abs(free - alone).max() > 0.1
-    assert min(gap(one[:, 0], one[:, 1]) for one in free[0]) > 0.24
+    assert min(gap(item[:, 0], item[:, 1]) for item in free[0]) > 0.24
     ahead = np.stack([np.full((12, 2), np.nan), [3.0, 0.05] - np.arange(1.0, 13.0)[:, None] * [0.48, 0.0]], 1)[None]
     planned = AnchorNet("open", reaction="none").predict(dataclasses.replace(past, plan=ahead), 12, samples).position
     np.testing.assert_array_equal(planned[0, :, :, 1], np.repeat(ahead[:, :, 1], len(planned[0]), axis=0))
-    assert min(gap(one[:, 0], one[:, 1]) for one in planned[0]) > 0.24
+    assert min(gap(item[:, 0], item[:, 1]) for item in planned[0]) > 0.24
 
 
 @pytest.mark.parametrize(("speed", "noise", "steady"), [(0.0, 0.0, True), (1.2, 0.0, True), (1.2, 0.01, False)])

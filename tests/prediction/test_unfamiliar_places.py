@@ -58,7 +58,7 @@ def test_a_neighbor_far_away_changes_nothing(windows: Maker) -> None:
 def test_walkers_in_a_wide_place_do_not_stop(windows: Maker) -> None:
     rng = np.random.default_rng(0)
     crowd = [(0.0, 0.0, 1.4, 0.0)] + [(*rng.uniform(-40.0, 40.0, 2), *rng.normal(0.0, 1.0, 2)) for _ in range(12)]
-    crowd = [one for one in crowd if np.hypot(one[0], one[1]) > 10.0 or one[2] == 1.4]
+    crowd = [item for item in crowd if np.hypot(item[0], item[1]) > 10.0 or item[2] == 1.4]
     end = NET.predict(walkers(windows, *crowd), 12).position[0, 0, -1, 0, 0]
     assert 0.8 * 4.8 * 1.4 < end < 1.2 * 4.8 * 1.4
 

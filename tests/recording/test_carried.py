@@ -81,7 +81,7 @@ def test_a_recording_keeps_what_its_trial_names(made: Path) -> None:
     path = made / "out" / "episode.mcap"
     with path.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True)
-        held = {one.name: one.data for one in reader.iter_attachments()}
+        held = {attachment.name: attachment.data for attachment in reader.iter_attachments()}
         summary = reader.get_summary()
     assert held == {name: (made / name).read_bytes() for name in NAMES}
     assert summary is not None
@@ -183,7 +183,7 @@ def test_a_killed_run_has_its_files_too(made: Path, tmp_path: Path) -> None:
     assert replay(torn, trust=True).equal
     assert repair(torn) is not None
     with torn.open("rb") as stream:
-        assert {one.name for one in make_reader(stream).iter_attachments()} == NAMES
+        assert {attachment.name for attachment in make_reader(stream).iter_attachments()} == NAMES
     assert replay(torn, trust=True).equal
 
 
@@ -218,8 +218,10 @@ def rewritten(source: Path, target: Path, names: dict[str, str], data: bytes | N
                     row["name"] = names.get(row["name"], row["name"])
                 values["files"] = json.dumps(rows)
             writer.add_metadata(record_.name, values)
-        for one in list(reader.iter_attachments()):
-            writer.add_attachment(0, 0, names.get(one.name, one.name), one.media_type, data or one.data)
+        for attachment in list(reader.iter_attachments()):
+            writer.add_attachment(
+                0, 0, names.get(attachment.name, attachment.name), attachment.media_type, data or attachment.data
+            )
         schemas: dict[int, int] = {}
         channels: dict[int, int] = {}
         for schema, channel, message in reader.iter_messages(log_time_order=False):
@@ -268,7 +270,7 @@ def retold(source: Path, target: Path, change: Callable[[dict[str, str]], None],
     with source.open("rb") as old, target.open("wb") as new:
         reader, writer = make_reader(old), Writer(new)
         writer.start(profile="ros2")
-        held = {one.name: one.data for one in reader.iter_attachments()} | attached
+        held = {attachment.name: attachment.data for attachment in reader.iter_attachments()} | attached
         for name, data in held.items():
             writer.add_attachment(0, 0, name, "", data)
         for record_ in list(reader.iter_metadata()):

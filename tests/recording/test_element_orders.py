@@ -103,10 +103,10 @@ def test_a_wall_comes_and_goes_in_the_physics_world(tmp_path: Path) -> None:
     with open_run(trial, 1, out=tmp_path / "a.mcap") as running:
         while running.outcome is None:
             running.step(orders.get(running.simulation.tick, ()))
-            forces += [(running.simulation.tick, one) for one in running.simulation.world.forces_of(0)]
+            forces += [(running.simulation.tick, item) for item in running.simulation.world.forces_of(0)]
             if running.simulation.tick == 30:
                 assert running.simulation.world.scene.position[0, 1, 0] < -3.9 - 0.25
-    assert any(one.second.kind == "wall" and 6 < tick <= 31 for tick, one in forces)
+    assert any(item.second.kind == "wall" and 6 < tick <= 31 for tick, item in forces)
     assert running.simulation.world.scene.position[0, 1, 0] > -4.15
     assert running.simulation.trial == trial
     assert replay(tmp_path / "a.mcap").equal

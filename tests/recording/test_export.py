@@ -29,9 +29,9 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RecordedEp
 
 def table(path: Path, to: Path, name: str) -> pd.DataFrame:
     rows = export(path, to, name)
-    found = pd.read_parquet(to) if to.suffix == ".parquet" else pd.read_csv(to, keep_default_na=False)
-    assert len(found) == rows
-    return found
+    data_frame = pd.read_parquet(to) if to.suffix == ".parquet" else pd.read_csv(to, keep_default_na=False)
+    assert len(data_frame) == rows
+    return data_frame
 
 
 def test_commands_that_the_file_does_not_have_are_nan(recorded: tuple[Path, RecordedEpisode], tmp_path: Path) -> None:

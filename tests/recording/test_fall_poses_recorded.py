@@ -49,7 +49,11 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def raw_messages(path: Path) -> list[tuple[int, bytes]]:
     with path.open("rb") as stream:
-        return [(one.stamp, one.data) for one in McapReader(stream).messages() if one.topic.topic == FALL_POSES]
+        return [
+            (message.stamp, message.data)
+            for message in McapReader(stream).messages()
+            if message.topic.topic == FALL_POSES
+        ]
 
 
 def test_poses_are_those_of_the_simulation(path: Path) -> None:
@@ -70,7 +74,7 @@ def test_only_people_out_of_balance_are_recorded(path: Path) -> None:
     assert all(not poses for poses, late in zip(episode.fall_poses, begin, strict=True) if not late)
     known = [{*poses} for poses in episode.fall_poses]
     assert set().union(*known) == {STUMBLES, FALLS}
-    stumbling = episode.times[[STUMBLES in one for one in known]]
+    stumbling = episode.times[[STUMBLES in item for item in known]]
     assert 0.3 < np.ptp(stumbling) < 3.0  # then the person stands again
     assert not any(poses[STUMBLES].down for poses in episode.fall_poses if STUMBLES in poses)
     tilts = [poses[FALLS].tilt for poses in episode.fall_poses if FALLS in poses]

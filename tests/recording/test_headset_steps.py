@@ -28,4 +28,4 @@ def test_a_run_is_recorded_replayed_and_branched(step: float, tmp_path: Path) ->
     assert read.tracks(0.4).row_rate == pytest.approx(2.5)
     assert len(np.unique(read.tracks(0.4).frame)) == 4
     many = simulate_seeds(trial, [3, 4])
-    assert [one.digest for one in many] == [summary.digest, simulate(trial, 4).digest]
+    assert [item.digest for item in many] == [summary.digest, simulate(trial, 4).digest]

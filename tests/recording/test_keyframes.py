@@ -46,16 +46,16 @@ class Steering:
     def orders(self, simulation: Simulation) -> list[Any]:
         tick = simulation.tick
         robot = simulation.robots[0].robot.name
-        found: list[Any] = []
+        result: list[Any] = []
         if tick % 7 == 0:
-            found.append(VelocityOrder(robot=robot, forward=0.1 + 0.01 * (tick % 5), turn=0.1))
+            result.append(VelocityOrder(robot=robot, forward=0.1 + 0.01 * (tick % 5), turn=0.1))
         if tick in (30, 150):
-            found.append(ParameterOrder(path="limits/max-speed", value=f"{2.0 + tick / 1000}"))
+            result.append(ParameterOrder(path="limits/max-speed", value=f"{2.0 + tick / 1000}"))
         if tick in (40, 41, 170):
-            found.append(AddPersonOrder(x=1.0, y=0.2 + 0.01 * tick, goal_x=3.0, goal_y=1.0))
+            result.append(AddPersonOrder(x=1.0, y=0.2 + 0.01 * tick, goal_x=3.0, goal_y=1.0))
         if tick == 50:
-            found.append(MoveOrder(person=simulation.trial.people, x=0.5, y=0.5))
-        return found
+            result.append(MoveOrder(person=simulation.trial.people, x=0.5, y=0.5))
+        return result
 
 
 @pytest.fixture(scope="module")

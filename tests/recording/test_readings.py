@@ -79,8 +79,8 @@ def test_an_episode_keeps_every_reading(recorded: tuple[Path, Episode]) -> None:
     assert set(read.readings) == set(episode.readings)
     for topic, readings in episode.readings.items():
         assert len(read.readings[topic]) == len(readings)
-        for one, two in zip(read.readings[topic], readings, strict=True):
-            same(one, two, topic)
+        for item, two in zip(read.readings[topic], readings, strict=True):
+            same(item, two, topic)
     assert replay(path).equal
 
 
@@ -204,13 +204,13 @@ def test_a_reading_is_decoded_when_it_is_asked_for(recorded: tuple[Path, Episode
     path, episode = recorded
     read = read_episode(path)
     assert (len(read.readings["robot/depth"]), len(read.scans), read.people["id"].size) == (11, 21, 3)
-    assert read.readings["robot/depth"].times == pytest.approx([one.time for one in episode.readings["robot/depth"]])
+    assert read.readings["robot/depth"].times == pytest.approx([item.time for item in episode.readings["robot/depth"]])
     assert not decoded
     depth = read.readings["robot/depth"]
     assert depth[3] is depth[3]
     same(depth[-1], episode.readings["robot/depth"][-1], "the last one")
     assert decoded == {"DepthImage": 2}
-    assert [one.time for one in depth[1:8:3]] == [episode.readings["robot/depth"][k].time for k in (1, 4, 7)]
+    assert [item.time for item in depth[1:8:3]] == [episode.readings["robot/depth"][k].time for k in (1, 4, 7)]
     assert sum(1 for _ in depth) == 11
     assert decoded.total() < 16
     with pytest.raises(IndexError):
@@ -221,7 +221,7 @@ def test_decoded_readings_are_not_kept(recorded: tuple[Path, Episode], decoded: 
     clouds = read_episode(recorded[0]).readings["robot/cloud"]
     kept = [weakref.ref(cloud) for cloud in clouds]
     assert decoded == {"Cloud": 11}
-    assert sum(one() is not None for one in kept) <= 8
+    assert sum(item() is not None for item in kept) <= 8
 
 
 @pytest.mark.parametrize(("table", "kinds"), [("people", set()), ("inertial", {"Inertial"}), ("points", {"Cloud"})])
@@ -275,8 +275,8 @@ def test_chunks_of_readings_are_left_out(recorded: tuple[Path, Episode], monkeyp
     path, episode = recorded
     with path.open("rb") as stream:
         chunks: dict[int, set[str]] = {}
-        for one in McapReader(stream).messages():
-            chunks.setdefault(one.place.record.start, set()).add(one.topic.topic)
+        for message in McapReader(stream).messages():
+            chunks.setdefault(message.place.record.start, set()).add(message.topic.topic)
     apart = [topics for topics in chunks.values() if "/robot/depth/image" in topics]
     assert apart
     assert all(topic.count("/") >= 2 and "/people" not in topics for topics in apart for topic in topics)

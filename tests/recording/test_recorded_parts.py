@@ -110,7 +110,11 @@ def test_a_scan_of_an_old_episode_is_placed_by_its_transforms(plain: Path) -> No
     stamp, make, episode = 500_000_000, Messages(), read_episode(plain)
     with plain.open("rb") as stream:
         messages = list(McapReader(stream).messages())
-    heard = [(one.topic, one.data) for one in messages if one.stamp == stamp or one.topic.topic == "/tf_static"]
+    heard = [
+        (message.topic, message.data)
+        for message in messages
+        if message.stamp == stamp or message.topic.topic == "/tf_static"
+    ]
     old = ("/tf", "/tf_static", "/robot/scan")  # there were no records of readings
     scan = _moment(stamp, [(t.topic, make.decode_message(data, t.kind)) for t, data in heard if t.topic in old])
     x, y = episode.position[5, episode.robots[0]]

@@ -57,16 +57,16 @@ def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
     assert [ring.tolist() for ring in read.walls] == [ring.tolist() for ring in episode.walls]
     assert read.metrics == pytest.approx(dict(episode.metrics), nan_ok=True)
     assert len(read.scans) == len(episode.scans) == 41
-    for one, two in zip(read.scans, episode.scans, strict=True):
-        assert one.time == two.time
-        assert one.pose == two.pose
-        assert np.array_equal(one.ranges, two.ranges.astype(np.float32).astype(np.float64))
-        assert np.array_equal(one.hit, two.hit)
-        assert np.allclose(one.angles, two.angles, atol=1e-5)
-    for one, two in ((read.tracks(), episode.tracks()), (read.tracks(0.1), data.load(path))):
-        assert np.array_equal(one.x, two.x)
-        assert np.array_equal(one.id, two.id)
-        assert np.array_equal(one.frame, two.frame)
+    for scan, two in zip(read.scans, episode.scans, strict=True):
+        assert scan.time == two.time
+        assert scan.pose == two.pose
+        assert np.array_equal(scan.ranges, two.ranges.astype(np.float32).astype(np.float64))
+        assert np.array_equal(scan.hit, two.hit)
+        assert np.allclose(scan.angles, two.angles, atol=1e-5)
+    for item, two in ((read.tracks(), episode.tracks()), (read.tracks(0.1), data.load(path))):
+        assert np.array_equal(item.x, two.x)
+        assert np.array_equal(item.id, two.id)
+        assert np.array_equal(item.frame, two.frame)
 
 
 def expected(episode: Episode) -> dict[str, int]:

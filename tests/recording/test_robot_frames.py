@@ -76,12 +76,12 @@ class Recorded:
     @property
     def parents(self) -> dict[str, set[str]]:
         """Parents of each frame."""
-        found: dict[str, set[str]] = {}
+        result: dict[str, set[str]] = {}
         for topic in ("/tf", "/tf_static"):
             for _, message in self.messages[topic]:
                 for row in message.transforms:
-                    found.setdefault(row.child_frame_id, set()).add(row.header.frame_id)
-        return found
+                    result.setdefault(row.child_frame_id, set()).add(row.header.frame_id)
+        return result
 
     def pose(self, frame: str, stamp: int) -> SpatialPose:
         """Return the pose of a frame in the map at an instant, as a listener of transforms does."""
@@ -106,11 +106,11 @@ class Recorded:
 
 
 def messages_of(path: Path) -> dict[str, list[tuple[int, Any]]]:
-    found: dict[str, list[tuple[int, Any]]] = {}
+    result: dict[str, list[tuple[int, Any]]] = {}
     with AnyReader([path]) as bag:
         for connection, stamp, raw in bag.messages():
-            found.setdefault(connection.topic, []).append((stamp, bag.deserialize(raw, connection.msgtype)))
-    return found
+            result.setdefault(connection.topic, []).append((stamp, bag.deserialize(raw, connection.msgtype)))
+    return result
 
 
 def record(trial: Trial, folder: Path) -> Recorded:
@@ -176,7 +176,7 @@ def test_the_description_is_the_urdf_of_the_robot(recorded: Recorded) -> None:
 def test_transforms_place_every_sensor_where_it_measured(recorded: Recorded) -> None:
     """At recorded instants; a planar reading is compared in the plane."""
     for topic, readings in recorded.episode.readings.items():
-        reading = [one for one in readings if round(one.time * 1e9) % 100_000_000 == 0][-1]
+        reading = [reading for reading in readings if round(reading.time * 1e9) % 100_000_000 == 0][-1]
         found, true = recorded.pose(topic, round(reading.time * 1e9)), spatial_pose(reading.pose)
         assert found.position[0, :2] == pytest.approx(true.position[0, :2], abs=1e-6), topic
         if not isinstance(reading.pose, Pose):
@@ -187,7 +187,7 @@ def test_transforms_place_every_sensor_where_it_measured(recorded: Recorded) -> 
 
 
 def test_map_to_odom_is_the_error_of_the_odometry(recorded: Recorded) -> None:
-    readings = {round(one.time * 1e9): one for one in recorded.episode.readings["one/odometry"]}
+    readings = {round(item.time * 1e9): item for item in recorded.episode.readings["one/odometry"]}
     compared = 0
     for stamp, message in recorded.messages["/one/odom"]:
         assert (message.header.frame_id, message.child_frame_id) == ("one/odom", "one/base_link")
@@ -269,8 +269,8 @@ def test_a_branch_has_the_frames_at_its_start(tmp_path: Path) -> None:
     stamp = 600_000_000
     for topic in ("/one/odom", "/one/ground_truth/odom", "/two/odom"):
         before, after = (dict(rows[topic])[stamp] for rows in (whole.messages, part))
-        for one, two in ((before.pose.pose, after.pose.pose), (before.twist.twist, after.twist.twist)):
-            assert repr(one) == repr(two), topic
+        for item, two in ((before.pose.pose, after.pose.pose), (before.twist.twist, after.twist.twist)):
+            assert repr(item) == repr(two), topic
     before, after = (dict(rows["/tf"])[stamp].transforms for rows in (whole.messages, part))
     rows = [{row.child_frame_id: repr(row.transform) for row in found} for found in (before, after)]
     assert {name for name in rows[0] if rows[0][name] != rows[1][name]} <= {

@@ -41,7 +41,7 @@ def alone(vertices, faces, owner=-1):
 def both_ways(scene, pose, directions, limit=30.0):
     """Nearest triangles through the trees and one by one: distance, index and number of hits."""
     beams, skins = sort_beams(directions), scene.bodies.skins
-    found = []
+    result = []
     for each in (False, True):
         reach, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
         place, turn = pose.position[0], np.ascontiguousarray(pose.matrix[0])
@@ -53,8 +53,8 @@ def both_ways(scene, pose, directions, limit=30.0):
             with np.errstate(divide="ignore"):
                 hidden = (fall < 0.0) & (reach > height / -fall)
             reach[hidden], which[hidden] = np.inf, -1
-        found.append((reach, which))
-    return found
+        result.append((reach, which))
+    return result
 
 
 def assert_same(scene, pose, directions, limit=30.0):

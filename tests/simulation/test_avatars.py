@@ -173,7 +173,7 @@ def test_environments_are_those_of_single_runs_and_copies_continue(world: str) -
         alone = SimulationRun(Simulation(trial, e))
         for tick in range(steps):
             orders = [sample((tick + k) * trial.step, e) for k in (1.0, 0.4)] if tick % 7 != 3 else []
-            alone.step([dataclasses.replace(one, environment=0) for one in orders])
+            alone.step([dataclasses.replace(order, environment=0) for order in orders])
         assert state(many.simulation, e) == state(alone.simulation, 0)
     some = many.simulation.select([3, 1, 1])
     before = state(many.simulation, 1)
@@ -273,7 +273,7 @@ def test_a_contact_pushes_the_robot_and_not_the_avatar() -> None:
         run.step([AvatarOrder(avatar="guide", time=time, x=1.0 - 0.5 * time, y=0.0, heading=math.pi)])
         world = run.simulation.world
         assert world.scene.position[0, 0].tolist() == [1.0 - 0.5 * time, 0.0]
-        force = max([force, *(float(np.linalg.norm(one.force)) for one in world.forces)])
+        force = max([force, *(float(np.linalg.norm(force.force)) for force in world.forces)])
     assert 5.0 < force < 5000.0
     assert float(run.simulation.world.scene.position[0, 1, 0]) < -0.05
 
@@ -289,9 +289,9 @@ def test_orders_round_trip_and_are_checked() -> None:
         (RemoveOrder(person=2), "2 is the id of avatar 'guide'"),
         (MoveOrder(person=2, x=0.0, y=0.0), "2 is the id of avatar 'guide'"),
     ]
-    for one, message in wrong:
+    for item, message in wrong:
         with pytest.raises(InputError, match=message):
-            one.check(simulation)
+            item.check(simulation)
     for values, message in (
         ('"x": 0, "y": 0, "head": [1]', "head must be 7 numbers"),
         ('"x": NaN, "y": 0', "x = nan must be a finite number"),

@@ -58,23 +58,23 @@ TINY = parse_trial(FLOW)
 def test_a_batch_is_its_single_runs(name: str) -> None:
     trial = short(name)
     many = simulate_seeds(trial, SEEDS)
-    assert [one.digest for one in many] == [run(trial, seed).digest for seed in SEEDS]
-    assert [one.seed for one in many] == list(SEEDS)
-    assert len({one.digest for one in many}) > 1 or name == "frontal"
+    assert [item.digest for item in many] == [run(trial, seed).digest for seed in SEEDS]
+    assert [item.seed for item in many] == list(SEEDS)
+    assert len({item.digest for item in many}) > 1 or name == "frontal"
 
 
 @pytest.mark.parametrize("text", [FLOW, room("planar", LEAN), room("physics", LEAN)], ids=["flow", "planar", "physics"])
 def test_runs_of_different_lengths_and_worlds(text: str) -> None:
     trial = parse_trial(text)
     short_one = dataclasses.replace(trial, duration=min(trial.duration, 2.0))
-    assert [one.digest for one in simulate_seeds(short_one, SEEDS)] == [run(short_one, seed).digest for seed in SEEDS]
+    assert [seed.digest for seed in simulate_seeds(short_one, SEEDS)] == [run(short_one, seed).digest for seed in SEEDS]
 
 
 def test_who_ends_early_leaves_the_others_alone() -> None:
     trial = load_trial("circle-crossing", navigator="straight", reactive=False)
     singles = [run(trial, seed) for seed in SEEDS]
-    assert len({one.steps for one in singles}) > 1
-    assert [one.digest for one in simulate_seeds(trial, SEEDS)] == [one.digest for one in singles]
+    assert len({single.steps for single in singles}) > 1
+    assert [seed.digest for seed in simulate_seeds(trial, SEEDS)] == [single.digest for single in singles]
 
 
 def test_the_last_environment_has_its_own_number_of_people() -> None:
@@ -82,7 +82,7 @@ def test_the_last_environment_has_its_own_number_of_people() -> None:
     trial, seeds = load_trial("bottleneck", {"crowd/robot-gap": 0.0}), (9, 1)
     singles = [run(trial, seed) for seed in seeds]
     assert singles[0].steps < singles[1].steps
-    assert [one.digest for one in simulate_seeds(trial, seeds)] == [one.digest for one in singles]
+    assert [seed.digest for seed in simulate_seeds(trial, seeds)] == [single.digest for single in singles]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Shaky(ORCA):
 
 def test_a_model_with_random_numbers_is_asked_for_each_environment() -> None:
     trial = dataclasses.replace(short("crossing-flows"), crowd=Shaky())
-    assert [one.digest for one in simulate_seeds(trial, SEEDS)] == [simulate(trial, seed).digest for seed in SEEDS]
+    assert [seed.digest for seed in simulate_seeds(trial, SEEDS)] == [simulate(trial, seed).digest for seed in SEEDS]
 
 
 @pytest.mark.parametrize("text", [FLOW, room("planar", LEAN)], ids=["flow", "planar"])
@@ -108,8 +108,8 @@ def test_environments_restart_on_their_own(text: str, data: Any) -> None:
     simulation = Simulation(trial, [0, 1, 2])
     singles = {e: Simulation(trial, e) for e in range(3)}
     simulation.begin()
-    for one in singles.values():
-        one.begin()
+    for single in singles.values():
+        single.begin()
     seed = 3
     for _ in range(40):
         again = data.draw(st.lists(st.integers(0, 2), max_size=1 if seed > 8 else 2, unique=True)) if seed < 9 else []
@@ -122,8 +122,8 @@ def test_environments_restart_on_their_own(text: str, data: Any) -> None:
                 singles[e].begin()
         assert [digest(simulation.record(e)) for e in range(3)] == [digest(singles[e].record()) for e in range(3)]
         simulation.advance()
-        for one in singles.values():
-            one.advance()
+        for single in singles.values():
+            single.advance()
     assert simulation.ticks.tolist() == [int(singles[e].ticks[0]) for e in range(3)]
 
 
@@ -161,8 +161,8 @@ def test_a_failure_ends_only_its_environment() -> None:
         singles = [simulate(trial, seed) for seed in seeds]
     with pytest.warns(RunFailureWarning):
         many = simulate_seeds(trial, seeds)
-    assert [(one.outcome, one.digest, one.failure) for one in many] == [
-        (one.outcome, one.digest, one.failure) for one in singles
+    assert [(item.outcome, item.digest, item.failure) for item in many] == [
+        (single.outcome, single.digest, single.failure) for single in singles
     ]
 
 
@@ -181,11 +181,11 @@ def test_a_failure_of_the_crowd_ends_only_its_environment() -> None:
     seeds = range(4)
     with pytest.warns(RunFailureWarning):
         singles = [simulate(trial, seed) for seed in seeds]
-    assert "error" in {one.outcome for one in singles}
+    assert "error" in {single.outcome for single in singles}
     with pytest.warns(RunFailureWarning):
         many = simulate_seeds(trial, seeds)
-    assert [(one.outcome, one.digest, one.failure, one.steps) for one in many] == [
-        (one.outcome, one.digest, one.failure, one.steps) for one in singles
+    assert [(item.outcome, item.digest, item.failure, item.steps) for item in many] == [
+        (single.outcome, single.digest, single.failure, single.steps) for single in singles
     ]
 
 

@@ -49,7 +49,7 @@ def hall(world: str, opening: str = "approach") -> Trial:
 
 def advance(simulation: Simulation, steps: int, first_order: int = 20) -> list[str]:
     """Advance, opening the exit in each environment at its own time by its seed; return a digest for each."""
-    found = [EpisodeDigest() for _ in simulation.seeds]
+    episode_digests = [EpisodeDigest() for _ in simulation.seeds]
     for _ in range(steps):
         for e, seed in enumerate(simulation.seeds):
             if simulation.ticks[e] == first_order + 10 * seed:
@@ -58,9 +58,9 @@ def advance(simulation: Simulation, steps: int, first_order: int = 20) -> list[s
                 order.apply(simulation)
         simulation.advance()
         assert not simulation.failed.any(), simulation.failures
-        for e, digest in enumerate(found):
+        for e, digest in enumerate(episode_digests):
             digest.take(simulation.record(e))
-    return [digest.hexdigest("") for digest in found]
+    return [digest.hexdigest("") for digest in episode_digests]
 
 
 def shares(simulation: Simulation) -> list[list[float]]:
@@ -70,15 +70,15 @@ def shares(simulation: Simulation) -> list[list[float]]:
 def history(trial: Trial, seeds: list[int], steps: int) -> list[list[Any]]:
     """Return the states of each environment after each step: scene, doors, command and readings."""
     simulation = Simulation(trial, seeds)
-    found: list[list[Any]] = [[] for _ in seeds]
+    result: list[list[Any]] = [[] for _ in seeds]
     for _ in range(steps):
         advance(simulation, 1)
         for e, own in enumerate(worlds_of(simulation.world)):
             record, scene = simulation.record(e), own.scene
             arrays = (scene.position, scene.velocity, scene.heading, scene.walls.segments(), own.doors.share)
             ranges = [reading.ranges.tobytes() for *_, reading in record.readings]
-            found[e].append(([array.tobytes() for array in arrays], simulation.world.twists[3].at(e), ranges))
-    return found
+            result[e].append(([array.tobytes() for array in arrays], simulation.world.twists[3].at(e), ranges))
+    return result
 
 
 @pytest.mark.parametrize("world", WORLDS)

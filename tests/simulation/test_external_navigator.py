@@ -48,14 +48,14 @@ def drive(trial: Trial, seeds: Any, ticks: set[int], steps: int) -> list[tuple[l
     """Return command and place of the robot in each environment after each step."""
     simulation, sender = Simulation(trial, seeds), Sender(ticks)
     simulation.begin()
-    found = []
+    result = []
     for _ in range(steps):
         for order in sender.orders(simulation):
             order.apply(simulation)
         simulation.advance()
         robot = simulation.robots[0]
-        found.append((robot.command[:, 0].tolist(), simulation.world.pose(robot.agent).position.tolist()))
-    return found
+        result.append((robot.command[:, 0].tolist(), simulation.world.pose(robot.agent).position.tolist()))
+    return result
 
 
 def test_the_trial_can_be_read_written_and_checked() -> None:

@@ -55,7 +55,7 @@ def test_a_fault_acts_from_its_begin_and_is_the_same_in_a_batch(kind: str, healt
     trial = _trial(KINDS[kind])
     assert parse_trial(trial_xml(trial)) == trial
     alone = [simulate(trial, seed) for seed in (1, 2)]
-    assert [one.digest for one in simulate_seeds(trial, [1, 2])] == [one.digest for one in alone]
+    assert [seed.digest for seed in simulate_seeds(trial, [1, 2])] == [item.digest for item in alone]
     found, fault = alone[0], trial.robots[0].faults[0].fault
     assert found.digest != healthy.digest
     rows = min(len(found.times), len(healthy.times))
@@ -181,8 +181,8 @@ def test_variants_differ_in_the_numbers_of_faults() -> None:
     trial = _trial(KINDS["frozen"])
     variants = [apply_values(trial, {"robot/fault/begin": begin, "robot/fault/end": 3.5}) for begin in (0.5, 1.0, 1.5)]
     together = simulate_variants(variants, [1, 1, 2])
-    alone = [simulate(one, seed) for one, seed in zip(variants, (1, 1, 2), strict=True)]
-    assert [one.digest for one in together] == [one.digest for one in alone]
+    alone = [simulate(variant, seed) for variant, seed in zip(variants, (1, 1, 2), strict=True)]
+    assert [item.digest for item in together] == [item.digest for item in alone]
     other = apply_values(trial, {"robot/fault/sensor": "scan"})
     with pytest.raises(InputError, match="differ in robots"):
         simulate_variants([trial, other], [1, 1])

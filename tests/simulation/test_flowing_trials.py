@@ -96,13 +96,13 @@ def test_a_recording_of_a_flow_is_the_episode(recorded: tuple[Path, Episode]) ->
     assert np.allclose(read.velocity, episode.velocity, rtol=0, atol=1e-12)
     assert read.robots == episode.robots
     assert parse_trial(read.xml) == WHOLE
-    for one, two in ((read.tracks(), episode.tracks()), (read.tracks(0.1), data.load(path))):
-        assert np.array_equal(one.x, two.x)
-        assert np.array_equal(one.id, two.id)
-        assert np.array_equal(one.frame, two.frame)
-        assert one.robots == two.robots == frozenset([4])
-    for one, two in zip(read.scans, episode.scans, strict=True):
-        assert np.array_equal(one.hit, two.hit)
+    for item, two in ((read.tracks(), episode.tracks()), (read.tracks(0.1), data.load(path))):
+        assert np.array_equal(item.x, two.x)
+        assert np.array_equal(item.id, two.id)
+        assert np.array_equal(item.frame, two.frame)
+        assert item.robots == two.robots == frozenset([4])
+    for scan, two in zip(read.scans, episode.scans, strict=True):
+        assert np.array_equal(scan.hit, two.hit)
 
 
 def test_a_flow_replays_to_the_same_bytes(recorded: tuple[Path, Episode]) -> None:
@@ -288,9 +288,9 @@ def test_an_old_scan_does_not_show_who_took_the_place_of_somebody() -> None:
     near = Spawner(count=1, zone=box(2, 0, 0.1, 0.1), goal=box(2, 3), speed=1.5)
     far = SourceSpec(zone=box(40, 0), goal=box(60, 0), rate=1.0, timing="regular", max_count=1, speed=1.0)
     episode = run(trial(spawners=[near], sources=[far], robots=[bot], capacity=1, duration=3.9))
-    seen = {len(one.people) for one in told}
+    seen = {len(item.people) for item in told}
     assert seen == {0, 1}
-    assert all(np.all(one.people.position[:, 0] < 10.0) for one in told)
+    assert all(np.all(item.people.position[:, 0] < 10.0) for item in told)
     assert episode.active[-1].tolist() == [False, True, True]
 
 

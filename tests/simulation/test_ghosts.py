@@ -156,8 +156,8 @@ def test_sensors_in_space_miss_a_ghost() -> None:
 def test_a_ghost_has_no_contacts_and_no_collision() -> None:
     trial = facing(False, navigator=Reckless())
     ghost = facing(True, navigator=Reckless())
-    with_end = [dataclasses.replace(one, end=dataclasses.replace(one.end, collision=True)) for one in (trial, ghost)]
-    collided, passed = (simulate(one, 0) for one in with_end)
+    with_end = [dataclasses.replace(item, end=dataclasses.replace(item.end, collision=True)) for item in (trial, ghost)]
+    collided, passed = (simulate(item, 0) for item in with_end)
     assert collided.outcome == "collision"
     assert passed.outcome == "timeout"
     simulation = Simulation(ghost, 0)
@@ -174,11 +174,13 @@ def test_environments_with_a_ghost_are_their_single_runs() -> None:
     many, singles = Simulation(trial, range(3)), [Simulation(trial, seed) for seed in range(3)]
     for _ in range(40):
         many.advance()
-        for one in singles:
-            one.advance()
-    for e, one in enumerate(singles):
-        np.testing.assert_array_equal(many.world.environment_scene(e).position, one.world.environment_scene(0).position)
-        np.testing.assert_array_equal(many.world.environment_scene(e).active, one.world.environment_scene(0).active)
+        for single in singles:
+            single.advance()
+    for e, single in enumerate(singles):
+        np.testing.assert_array_equal(
+            many.world.environment_scene(e).position, single.world.environment_scene(0).position
+        )
+        np.testing.assert_array_equal(many.world.environment_scene(e).active, single.world.environment_scene(0).active)
     again = many.select([2, 0])
     again.restart([1], [1])
     for _ in range(3):
@@ -241,8 +243,8 @@ def test_people_props_and_robots_do_not_notice_a_ghost_with_a_body() -> None:
     for k in range(60):
         for run in runs:
             run.advance()
-        for one, two in zip(*(everything(run, agent) for run in runs), strict=True):
-            np.testing.assert_array_equal(one, two, err_msg=str(k))
+        for item, two in zip(*(everything(run, agent) for run in runs), strict=True):
+            np.testing.assert_array_equal(item, two, err_msg=str(k))
     moved = runs[0].world.scene.position[0, agent] - runs[1].world.scene.position[0, agent]
     assert np.hypot(*moved) > 0.8
 
@@ -278,14 +280,14 @@ def test_environments_with_bodies_and_a_ghost_are_their_single_runs() -> None:
     trial = with_bodies(with_robots(dataclasses.replace(parse_trial(FLOW), duration=2.0), ghost=True))
     many, singles = Simulation(trial, range(2)), [Simulation(trial, seed) for seed in range(2)]
     for _ in range(8):
-        for one in (many, *singles):
-            one.advance()
+        for item in (many, *singles):
+            item.advance()
     again = many.select([1, 0])
-    for one in (again, *singles):
-        one.advance()
-    for e, one in enumerate(reversed(singles)):
+    for item in (again, *singles):
+        item.advance()
+    for e, single in enumerate(reversed(singles)):
         np.testing.assert_array_equal(
-            again.world.environment_scene(e).position, one.world.environment_scene(0).position
+            again.world.environment_scene(e).position, single.world.environment_scene(0).position
         )
 
 

@@ -206,7 +206,7 @@ def test_any_sequence_of_goals_is_refused_or_repeats(goals: list[tuple[int, floa
             taken[tick] += [] if refused else [order]
         run.step(taken[tick])
         again.step(taken[tick])
-    places = [one.simulation.world.scene.position[0, 0] for one in (run, again)]
+    places = [item.simulation.world.scene.position[0, 0] for item in (run, again)]
     assert np.all(np.isfinite(places))
     np.testing.assert_array_equal(*places)
     latest = [order for tick in sorted(taken) for order in taken[tick]]

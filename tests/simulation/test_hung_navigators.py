@@ -117,7 +117,7 @@ def test_a_navigator_that_hangs_ends_its_run_as_a_failure(way: str) -> None:
 def test_every_form_of_a_navigator_has_a_limit(navigator: Navigator, name: str) -> None:
     with pytest.warns(RunFailureWarning, match=f"navigator {name} of robot 'robot' did not return"):
         episodes = simulate_seeds(with_navigator(navigator), [1, 2])
-    assert [one.outcome for one in episodes] == ["error", "error"]
+    assert [episode.outcome for episode in episodes] == ["error", "error"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -140,12 +140,12 @@ def test_the_other_environments_go_on() -> None:
         return dataclasses.replace(trial, robots=[robot])
 
     free = simulate_seeds(trial_with(0.0), range(4))
-    nearest = [min(np.hypot(*(one.position[:, 1:] - one.position[:, :1])[0].T)) for one in free]
+    nearest = [min(np.hypot(*(item.position[:, 1:] - item.position[:, :1])[0].T)) for item in free]
     order = np.argsort(nearest)
     between = float(np.mean(np.sort(nearest)[1:3])) - 0.6  # the observation knows the gap between bodies
     with pytest.warns(RunFailureWarning):
         some = simulate_seeds(trial_with(between), range(4))
-    hung = {k for k, one in enumerate(some) if one.outcome == "error"}
+    hung = {k for k, item in enumerate(some) if item.outcome == "error"}
     assert hung
     assert hung <= set(order[:3].tolist())
     assert [some[k].digest for k in range(4) if k not in hung] == [free[k].digest for k in range(4) if k not in hung]
@@ -176,7 +176,7 @@ def test_a_failed_run_has_the_same_digest_alone_and_among_others() -> None:
         together = simulate_seeds(trial, [1, 2])
     with pytest.warns(RunFailureWarning):
         alone = [simulate(trial, seed) for seed in (1, 2)]
-    assert [one.digest for one in together] == [one.digest for one in alone]
+    assert [item.digest for item in together] == [item.digest for item in alone]
     assert [order for _, order in together[1].orders] == [order for _, order in alone[1].orders]
 
 
@@ -208,7 +208,7 @@ def test_a_run_in_another_thread_ends_too() -> None:
 @pytest.mark.live
 def test_threads_end_with_their_callers() -> None:
     def threads() -> int:
-        return sum(one.name == "crowdbot-decisions" for one in threading.enumerate())
+        return sum(item.name == "crowdbot-decisions" for item in threading.enumerate())
 
     assert call_within(30.0, lambda: 1, "this") == 1
     before = threads()

@@ -53,10 +53,10 @@ def lab(world: str = "planar", bodies: str = "") -> Trial:
 
 
 def run(trial: Trial, orders: dict[int, list[Order]], steps: int, seeds: Any = 3) -> SimulationRun:
-    found = SimulationRun(Simulation(trial, seeds))
+    simulation_run = SimulationRun(Simulation(trial, seeds))
     for k in range(steps):
-        found.step(orders.get(k, ()))
-    return found
+        simulation_run.step(orders.get(k, ()))
+    return simulation_run
 
 
 def yaw(simulation: Simulation, environment: int = 0, sensor: int = 0) -> float:
@@ -91,7 +91,7 @@ def test_a_sensor_on_the_head_turns_with_it_and_keeps_the_target(world: str, bod
 def test_the_scan_in_the_plane_is_that_of_a_turned_sensor() -> None:
     turned = run(lab(), {0: [turn(math.pi / 2)]}, 2).simulation
     straight = run(lab(), {}, 2).simulation
-    ahead = [one.robots[0].sensors[0].reading(0).ranges[0, 15] for one in (turned, straight)]
+    ahead = [item.robots[0].sensors[0].reading(0).ranges[0, 15] for item in (turned, straight)]
     assert ahead[0] == pytest.approx(3.0, abs=0.1)
     assert ahead[1] > 5.0
 
@@ -100,11 +100,11 @@ def test_the_scan_in_the_plane_is_that_of_a_turned_sensor() -> None:
 def test_other_robots_see_the_moved_arm(world: str) -> None:
     lift = [JointOrder(robot="pepper", joint="LShoulderPitch", position=-0.2)]
     moved, same = (run(lab(world, "limbs"), orders, 25).simulation for orders in ({1: lift}, {}))
-    found = [one.world.body_scene().bodies for one in (moved, same)]
+    found = [item.world.body_scene().bodies for item in (moved, same)]
     assert not np.array_equal(found[0].start, found[1].start) or not np.array_equal(
         found[0].box_centre, found[1].box_centre
     )
-    scans = [one.robots[1].sensors[0].reading(0).ranges for one in (moved, same)]
+    scans = [item.robots[1].sensors[0].reading(0).ranges for item in (moved, same)]
     assert not np.array_equal(*scans)
 
 
@@ -115,8 +115,8 @@ def test_joints_of_environments_are_independent(world: str, bodies: str) -> None
     many = run(trial, {2: [turn(0.3, environment=0), turn(-0.7, environment=2)]}, 9, [3, 4, 5]).simulation
     for e, target in enumerate((0.3, None, -0.7)):
         alone = run(trial, {} if target is None else {2: [turn(target)]}, 9, 3 + e).simulation
-        for one, other in zip(many.new_readings(e), alone.new_readings(), strict=True):
-            np.testing.assert_array_equal(one[2].ranges, other[2].ranges)  # type: ignore[attr-defined]
+        for reading, other in zip(many.new_readings(e), alone.new_readings(), strict=True):
+            np.testing.assert_array_equal(reading[2].ranges, other[2].ranges)  # type: ignore[attr-defined]
         assert yaw(many, e) == pytest.approx(yaw(alone), abs=1e-12)
 
 

@@ -68,8 +68,8 @@ def angle(simulation: Simulation, joint: str) -> float:
     """Return where a joint is in the world [rad]."""
     world: Any = simulation.world
     if world.walls_fixed:
-        found: float = world.robot_bodies[1].joints()[joint][0]
-        return found
+        result: float = world.robot_bodies[1].joints()[joint][0]
+        return result
     return float(world._bodies[0].joints[1][joint])
 
 
@@ -171,7 +171,7 @@ def test_an_arm_is_felt_by_a_person_beside_the_robot() -> None:
     person = '<agent x="0.1" y="0.72" heading="0" body="man-36"/>'
     trial = parse_trial(text("physics", joints, person))
     still = parse_trial(text("physics", "", person))
-    runs = [SimulationRun(Simulation(one)) for one in (trial, still)]
+    runs = [SimulationRun(Simulation(item)) for item in (trial, still)]
     touched: set[str] = set()
     for run in runs:
         while run.outcome is None:

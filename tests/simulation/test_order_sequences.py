@@ -67,7 +67,7 @@ def random_value(name: str, kind: str, rng: np.random.Generator) -> Any:
     if "bool" in kind:
         return bool(rng.random() < 0.5)
     if "float" in kind and ("tuple" in kind or "list" in kind):
-        return [round(float(one), 3) for one in rng.uniform(-5, 12, rng.choice([0, 3, 7]))]
+        return [round(float(item), 3) for item in rng.uniform(-5, 12, rng.choice([0, 3, 7]))]
     if rng.random() < 0.25:
         return NUMBERS[rng.integers(len(NUMBERS))]
     return round(float(rng.uniform(-5, 12)), 3)

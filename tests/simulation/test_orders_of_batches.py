@@ -34,17 +34,17 @@ class Digests:
 
 def digests_of(seeds: list[int], environments: Iterable[int]) -> tuple[list[str], list[list[Order]]]:
     simulation = Simulation(load_trial("frontal", duration=1.0), seeds)
-    found = Digests(len(seeds))
-    run = SimulationRun(simulation, [found], [Steering(environments)])
+    digests = Digests(len(seeds))
+    run = SimulationRun(simulation, [digests], [Steering(environments)])
     while run.outcome is None:
         run.step()
-    return [one.hexdigest("") for one in found.each], found.orders
+    return [one.hexdigest("") for one in digests.each], digests.orders
 
 
 def test_a_steered_run_has_the_same_digest_alone_and_among_others() -> None:
     together, orders = digests_of([1, 2, 3], (1, 2))
     alone = [digests_of([seed], steered)[0][0] for seed, steered in ((1, ()), (2, (0,)), (3, (0,)))]
     assert together == alone
-    assert [len(one) for one in orders] == [0, 1, 1]
+    assert [len(order) for order in orders] == [0, 1, 1]
     assert orders[1][0] == VelocityOrder(robot="robot", forward=0.3)
     assert digests_of([2], ())[0][0] != alone[1]

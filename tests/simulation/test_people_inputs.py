@@ -55,7 +55,7 @@ def test_tracked_people_feed_the_track_history():
 def test_a_run_is_equal_alone_and_with_others():
     trial = trial_with("tracked")
     both = simulate_seeds(trial, [3, 4])
-    assert [one.digest for one in both] == [simulate(trial, seed).digest for seed in (3, 4)]
+    assert [item.digest for item in both] == [simulate(trial, seed).digest for seed in (3, 4)]
     assert both[0].digest != simulate(trial_with("seen"), 3).digest
 
 

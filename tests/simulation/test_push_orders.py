@@ -106,7 +106,7 @@ def test_with_balance_people_brace_step_or_fall_by_the_force() -> None:
         simulation = Simulation(trial(BALANCE, "woman-72", duration=6.0), 1)
         pushed(simulation, PushOrder(person=0, force=force, direction=0.0, duration=0.25))
         world = simulation.world
-        found.append((int(world.falling.balance.steps[0]), [one.direction for one in world.falls]))
+        found.append((int(world.falling.balance.steps[0]), [fall.direction for fall in world.falls]))
     assert found[0] == (0, [])
     assert found[1][0] >= 1
     assert found[1][1] == []

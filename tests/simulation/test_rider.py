@@ -41,9 +41,9 @@ def simulated(world: str, text: str = ROOM) -> Simulation:
 
 
 def walkers_of(simulation: Simulation) -> PeopleMotion:
-    found = simulation.world.people
-    assert found is not None
-    return found
+    people_motion = simulation.world.people
+    assert people_motion is not None
+    return people_motion
 
 
 @pytest.mark.parametrize("world", ["planar", "physics"])
@@ -95,11 +95,11 @@ def chair_world(attributes: str, others: str = "") -> Simulation:
 
 def test_a_rider_has_mass_and_the_chair_still_drives() -> None:
     empty, seated = (chair_world(f'type="wheelchair" {rider}') for rider in ("", 'rider="woman-36"'))
-    bodies: list[Any] = [one.world.robot_bodies[1] for one in (empty, seated)]  # type: ignore[attr-defined]
+    bodies: list[Any] = [item.world.robot_bodies[1] for item in (empty, seated)]  # type: ignore[attr-defined]
     mass = float(walkers_of(seated).people.mass[1])
     assert mass > 40.0
     assert bodies[1].mass == pytest.approx(bodies[0].mass + mass)
-    engine = [float(one._model.body_subtreemass[one.body]) for one in bodies]
+    engine = [float(body._model.body_subtreemass[body.body]) for body in bodies]
     assert engine[1] - engine[0] == pytest.approx(mass)
     again: Any = Simulation(seated.trial, 7).world
     assert again.engine_model is seated.world.engine_model  # type: ignore[attr-defined]
@@ -118,8 +118,10 @@ def test_a_robot_that_hits_a_rider_hits_a_person() -> None:
     contacts: set[tuple[int, int]] = set()
     for _ in range(70):
         run.step([VelocityOrder(robot="pepper", forward=0.8)])
-        contacts |= {(one.robot, one.other) for one in simulation.contacts()}
-    (event,) = [one for one in simulation.world.contact_events if one.second.kind == "person"]
+        contacts |= {(contact.robot, contact.other) for contact in simulation.contacts()}
+    (event,) = [
+        contact_event for contact_event in simulation.world.contact_events if contact_event.second.kind == "person"
+    ]
     assert (event.first.number, event.second.number) == (2, 1)
     assert event.limb in NAMES
     assert event.peak_force > 50.0
@@ -137,7 +139,7 @@ def test_a_person_who_walks_into_a_rider_touches_the_robot() -> None:
         y = 1.2 - 0.04 * tick
         order = AvatarOrder(avatar="guide", time=0.05 * tick, x=0, y=y, heading=-1.5708, skeleton=(0.0, y, 1.35, *rest))
         run.step([order])
-        links |= {one.first_part for one in run.simulation.world.forces if one.second.kind == "person"}
+        links |= {force.first_part for force in run.simulation.world.forces if force.second.kind == "person"}
     assert any(link.startswith("rider/") for link in links), links
 
 

@@ -76,7 +76,7 @@ def test_the_waypoint_is_the_next_corner_and_reading_it_changes_nothing() -> Non
 
 def state(simulation: Simulation) -> tuple[Any, ...]:
     robot = simulation.robots[0]
-    tracks = [(one.times.tolist(), one.ids.tolist(), one.position.tolist()) for one in robot.tracks]
+    tracks = [(track.times.tolist(), track.ids.tolist(), track.position.tolist()) for track in robot.tracks]
     return simulation.world.scene.position.tolist(), robot.command.tolist(), robot.path.tolist(), str(tracks)
 
 
@@ -109,10 +109,10 @@ def test_environments_with_bodies_plan_and_remember_alone(world: str) -> None:
     many, singles = Simulation(trial, [3, 4]), [Simulation(trial, seed) for seed in (3, 4)]
     for _ in range(8):
         many.advance()
-        for one in singles:
-            one.advance()
-    for e, one in enumerate(singles):
-        assert state(many.select([e]))[1:] == state(one)[1:]
+        for single in singles:
+            single.advance()
+    for e, single in enumerate(singles):
+        assert state(many.select([e]))[1:] == state(single)[1:]
     observation = many.observation("puck", 1)
     assert observation.waypoint != observation.goal
     assert observation.tracks is not None
@@ -155,7 +155,7 @@ def test_a_planner_changes_in_a_branch() -> None:
     robot = simulation.robots[0]
     assert np.isnan(robot.path).all()
     assert robot.planner.margin == 0.2
-    assert [one.length for one in robot.tracks] == [11]
+    assert [track.length for track in robot.tracks] == [11]
     simulation.advance()
 
 
@@ -188,11 +188,11 @@ def test_a_navigator_forecasts_from_tracks() -> None:
     many, singles = Simulation(trial, range(3)), [Simulation(trial, seed) for seed in range(3)]
     for _ in range(60):
         many.advance()
-        for one in singles:
-            one.advance()
+        for single in singles:
+            single.advance()
     assert many.failures == [None] * 3
-    for e, one in enumerate(singles):
-        assert state(many.select([e])) == state(one)
+    for e, single in enumerate(singles):
+        assert state(many.select([e])) == state(single)
     tracks = many.observation("robot", 2).tracks
     assert tracks is not None
     assert len(tracks.times) == 11

@@ -187,10 +187,10 @@ def test_a_mirrored_run_replays_branches_and_continues_to_the_byte(world: str, t
     restore_state(second, decode_state(encode_state(state_of(first.simulation))))
     runs = SimulationRun(first.simulation), SimulationRun(second)
     for tick in range(10, 16):
-        for one in runs:
-            one.step([sample(tick * trial.step)])
+        for run in runs:
+            run.step([sample(tick * trial.step)])
         for name in ("position", "velocity", "heading"):
-            here, there = (getattr(one.simulation.world.scene, name) for one in runs)
+            here, there = (getattr(run.simulation.world.scene, name) for run in runs)
             np.testing.assert_array_equal(here, there)
 
 
@@ -202,7 +202,7 @@ def test_environments_are_those_of_single_runs(world: str) -> None:
     for tick in range(8):
         many.step()
         orders = [sample((tick + k) * trial.step, 2) for k in (1.0, 0.4)] if tick % 5 != 3 else []
-        alone.step([dataclasses.replace(one, environment=0) for one in orders])
+        alone.step([dataclasses.replace(order, environment=0) for order in orders])
     scenes = many.simulation.world.environment_scene(2), alone.simulation.world.scene
     np.testing.assert_array_equal(scenes[0].position, scenes[1].position)
     np.testing.assert_array_equal(scenes[0].velocity, scenes[1].velocity)
@@ -271,9 +271,9 @@ def test_orders_round_trip_and_are_checked() -> None:
         (MoveOrder(person=1, x=0.0, y=0.0), "1 is the id of robot 'twin', whose pose comes from its source"),
         (VelocityOrder(robot="twin", forward=1.0), "robot 'twin' has <pose>; it is where its source says"),
     ]
-    for one, message in wrong:
+    for item, message in wrong:
         with pytest.raises(InputError, match=message):
-            one.check(simulation)
+            item.check(simulation)
     with pytest.raises(InputError, match="x = nan must be a finite number"):
         RobotPoseOrder(robot="twin", x=math.nan, y=0.0)
     with pytest.raises(InputError, match="time = inf must be a finite number of seconds"):

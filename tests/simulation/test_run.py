@@ -230,9 +230,9 @@ def test_two_robots_see_each_other_and_share_the_outcome() -> None:
     assert {"path_length", "b.success"} <= set(episode.metrics)
 
 
-def same(one: Episode, two: Episode) -> bool:
+def same(episode: Episode, two: Episode) -> bool:
     arrays = ("times", "position", "velocity", "heading", "active", "twists", "commands")
-    return one.digest == two.digest and all(np.array_equal(getattr(one, n), getattr(two, n)) for n in arrays)
+    return episode.digest == two.digest and all(np.array_equal(getattr(episode, n), getattr(two, n)) for n in arrays)
 
 
 def test_the_digest_is_that_of_the_bytes() -> None:
@@ -304,11 +304,11 @@ def test_a_second_ctrl_c_stops_at_once(tmp_path: Path) -> None:
 
 
 def test_a_run_outside_the_main_thread_leaves_signals_alone() -> None:
-    found: list[Episode] = []
-    thread = threading.Thread(target=lambda: found.append(run(TINY)))
+    episodes: list[Episode] = []
+    thread = threading.Thread(target=lambda: episodes.append(run(TINY)))
     thread.start()
     thread.join()
-    assert found[0].digest == run(TINY).digest
+    assert episodes[0].digest == run(TINY).digest
 
 
 def test_an_impossible_seed_is_refused_before_anything_is_written(tmp_path: Path) -> None:

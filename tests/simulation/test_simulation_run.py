@@ -37,11 +37,11 @@ def digest(simulation: Simulation) -> str:
 def path(trial: Trial, seeds: Any, steps: int) -> list[str]:
     """Return the digests of the first instants of a run."""
     run = SimulationRun(Simulation(trial, seeds))
-    found = [digest(run.simulation)]
+    result = [digest(run.simulation)]
     for _ in range(steps):
         run.step()
-        found.append(digest(run.simulation))
-    return found
+        result.append(digest(run.simulation))
+    return result
 
 
 @pytest.mark.parametrize(("name", "count"), [("flow", 1), ("flow", 3), ("planar", 2), ("physics", 1), ("physics", 2)])

@@ -74,7 +74,7 @@ def orders(tick: int, e: int, more: bool) -> list[Order]:
 
 def advance(simulation: Simulation, steps: int) -> str:
     """Advance with orders, and return the digest of the records of all environments."""
-    found = EpisodeDigest()
+    episode_digest = EpisodeDigest()
     for _ in range(steps):
         for e in range(simulation.count):
             for order in orders(simulation.tick, e, not simulation.world.walls_fixed):
@@ -82,8 +82,8 @@ def advance(simulation: Simulation, steps: int) -> str:
                 order.apply(simulation)
         simulation.advance()
         for e in range(simulation.count):
-            found.take(simulation.record(e))
-    return found.hexdigest("")
+            episode_digest.take(simulation.record(e))
+    return episode_digest.hexdigest("")
 
 
 def begun(trial: Trial, seeds: Any, steps: int) -> Simulation:

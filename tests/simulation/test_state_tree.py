@@ -66,12 +66,12 @@ def advanced(trial: Trial, seeds: Any, steps: int) -> Simulation:
 
 def digest(simulation: Simulation, steps: int) -> str:
     """Advance, and return the digest of the records of all environments."""
-    found = EpisodeDigest()
+    episode_digest = EpisodeDigest()
     for _ in range(steps):
         simulation.advance()
         for e in range(simulation.count):
-            found.take(simulation.record(e))
-    return found.hexdigest("")
+            episode_digest.take(simulation.record(e))
+    return episode_digest.hexdigest("")
 
 
 def restored(trial: Trial, seeds: Any, simulation: Simulation) -> Simulation:
@@ -213,12 +213,12 @@ def test_the_state_of_another_trial_is_refused() -> None:
 def answer(data: bytes, simulation: Simulation | None = None) -> object:
     """Return the state in bytes, or the sentence of its refusal; with a simulation, it is restored."""
     try:
-        found = decode_state(data)
+        result = decode_state(data)
         if simulation is not None:
-            restore_state(simulation, found)
+            restore_state(simulation, result)
     except StateError as error:
         return str(error)
-    return found
+    return result
 
 
 @given(place=st.floats(0, 1, exclude_max=True), value=st.integers(0, 255), cut=st.booleans())

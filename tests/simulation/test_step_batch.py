@@ -40,13 +40,13 @@ def equal(one: Any, other: Any) -> bool:
     return repr(one) == repr(other)
 
 
-def check_equal(one: Episode, other: Episode) -> None:
-    assert (one.digest, one.outcome, one.steps) == (other.digest, other.outcome, other.steps)
-    assert repr(dict(one.metrics)) == repr(dict(other.metrics))
+def check_equal(episode: Episode, other: Episode) -> None:
+    assert (episode.digest, episode.outcome, episode.steps) == (other.digest, other.outcome, other.steps)
+    assert repr(dict(episode.metrics)) == repr(dict(other.metrics))
     for name in (*ARRAYS, "contacts", "forces", "collisions", "orders"):
-        assert equal(getattr(one, name), getattr(other, name)), name
-    assert list(one.readings) == list(other.readings)
-    for name, readings in one.readings.items():
+        assert equal(getattr(episode, name), getattr(other, name)), name
+    assert list(episode.readings) == list(other.readings)
+    for name, readings in episode.readings.items():
         assert len(readings) == len(other.readings[name])
         assert all(map(equal, readings, other.readings[name])), name
 
@@ -57,7 +57,9 @@ def sensing(trial: Trial) -> Trial:
         Mount(name="scan", sensor=Lidar2D(rate=10.0, rays=30, delay=0.1), z=0.4),
         Mount(name="people", sensor=GroundTruthPeople(rate=5.0, range_max=8.0), z=0.4),
     )
-    return dataclasses.replace(trial, robots=tuple(dataclasses.replace(one, sensors=mounts) for one in trial.robots))
+    return dataclasses.replace(
+        trial, robots=tuple(dataclasses.replace(robot, sensors=mounts) for robot in trial.robots)
+    )
 
 
 @pytest.mark.parametrize(
@@ -101,7 +103,7 @@ def test_a_sink_of_single_records_gets_all_records(mixed: bool) -> None:
     run = SimulationRun(Simulation(trial, range(3)), [keeper, sink] if mixed else [sink])
     run.advance()
     ends = [end.outcome for end in run.ends if end is not None]
-    digests = [one.hexdigest(outcome) for one, outcome in zip(sink.digests, ends, strict=True)]
+    digests = [digest.hexdigest(outcome) for digest, outcome in zip(sink.digests, ends, strict=True)]
     assert digests == [simulate(trial, seed).digest for seed in range(3)]
     assert keeper.batches == 0
     assert isinstance(keeper, BatchSink)
@@ -117,7 +119,7 @@ def test_readings_of_a_batch_are_written_without_the_batch() -> None:
     first, _ = simulate_seeds(load_trial("circle-crossing", duration=1.0), range(2))
     copy = pickle.loads(pickle.dumps(first.readings))
     assert isinstance(copy, dict)
-    assert all(isinstance(one, Reading) for one in copy["robot/scan"])
+    assert all(isinstance(item, Reading) for item in copy["robot/scan"])
     assert all(map(equal, copy["robot/scan"], first.readings["robot/scan"]))
     assert "robot/scan" in repr(first.readings)
 

@@ -12,7 +12,7 @@ from crowdbot.simulation.termination import may_be_near, note_events
 
 def controls(*arrived: np.ndarray) -> list[SimpleNamespace]:
     """Return controls of robots that are no ghosts."""
-    return [SimpleNamespace(robot=SimpleNamespace(ghost=False), arrived=one) for one in arrived]
+    return [SimpleNamespace(robot=SimpleNamespace(ghost=False), arrived=item) for item in arrived]
 
 
 def test_the_first_event_stays() -> None:

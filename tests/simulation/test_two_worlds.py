@@ -83,9 +83,12 @@ def test_a_room_with_everything_is_the_identity_and_valid() -> None:
 @pytest.mark.parametrize("world", WORLDS)
 def test_explicit_people_have_the_same_bodies(world: str) -> None:
     trial = parse_trial(room(world, LEAN))
-    simulations = [Simulation(one, 4, posed=True) for one in (trial, expand_spawners(trial, 4))]
-    casts = [people_appearance(one.trial, one.people, one.world.scene.shape[1], 4) for one in simulations]
-    assert [one.name for one in casts[0].people.persons] == [one.name for one in casts[1].people.persons]
+    simulations = [Simulation(item, 4, posed=True) for item in (trial, expand_spawners(trial, 4))]
+    casts = [
+        people_appearance(simulation.trial, simulation.people, simulation.world.scene.shape[1], 4)
+        for simulation in simulations
+    ]
+    assert [person.name for person in casts[0].people.persons] == [person.name for person in casts[1].people.persons]
     assert casts[0].people.variation.tolist() == casts[1].people.variation.tolist()
     assert casts[0].activity == casts[1].activity
     assert casts[0].people.persons[0].name == "woman-36"
@@ -103,7 +106,7 @@ def test_readings_of_the_room(world: str) -> None:
     assert isinstance(pictures[0], RgbImage)
     assert pictures[0].rgb.shape == (1, 24, 32, 3)
     assert pictures[0].hit is not None
-    assert {one for picture in pictures for one in np.unique(picture.hit)} >= {-2, -3, 0}
+    assert {item for picture in pictures for item in np.unique(picture.hit)} >= {-2, -3, 0}
     assert len(found["pepper/laser_rear"][0].angles) == 31  # type: ignore[attr-defined]
     assert len(found["pepper/laser_front"][0].angles) == 481  # type: ignore[attr-defined]
     near = found["pepper/depth"][0]
@@ -113,7 +116,7 @@ def test_readings_of_the_room(world: str) -> None:
     assert told.ids() == [0, 1, 2, 3, 4, 6]
     turning = found["pepper/imu"][-1].acceleration  # type: ignore[attr-defined]
     assert np.isfinite(turning).all()
-    with_people = {one for cloud in found["pepper/rings"] for one in np.unique(cloud.hit)}  # type: ignore[attr-defined]
+    with_people = {item for cloud in found["pepper/rings"] for item in np.unique(cloud.hit)}  # type: ignore[attr-defined]
     assert {-4, -3, -2} <= with_people
     assert with_people & {0, 1, 2, 3, 4}
 
@@ -220,17 +223,17 @@ def test_collisions_and_forces_are_told_once() -> None:
     from crowdbot.simulation import StopRequest
 
     run_to_end(simulation, [Keeper()], StopRequest())
-    told = [one for frame in frames for one in frame.collisions]
+    told = [collision for frame in frames for collision in frame.collisions]
     world: object = simulation.world
     assert sorted(map(repr, told)) == sorted(map(repr, world.contact_events))  # type: ignore[attr-defined]
     assert told
     forced = {frame.nanoseconds / 1e9 for frame in frames if frame.forces}
     assert forced
-    for one in told:  # forces are stamped with the ends of their steps, of which some are in the collision
-        assert 0.0 <= one.begin < one.end <= 3.0 + 1e-9
-        assert min(abs(stamp - one.begin) for stamp in forced) <= trial.step + 1e-9
-        assert any(one.begin < stamp <= one.end + trial.step for stamp in forced)
-    assert max(one.end for one in told) > max(forced) - trial.step - 1e-9
+    for item in told:  # forces are stamped with the ends of their steps, of which some are in the collision
+        assert 0.0 <= item.begin < item.end <= 3.0 + 1e-9
+        assert min(abs(stamp - item.begin) for stamp in forced) <= trial.step + 1e-9
+        assert any(item.begin < stamp <= item.end + trial.step for stamp in forced)
+    assert max(item.end for item in told) > max(forced) - trial.step - 1e-9
     assert simulation.event.tolist() == [COLLISION]
 
 

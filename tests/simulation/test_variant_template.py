@@ -31,10 +31,10 @@ def test_each_variant_equals_its_own_run() -> None:
     trials, seeds = variants(), [5, 5, 6, 7, 8]
     together = simulate_variants(trials, seeds)
     alone = [simulate(trial, seed) for trial, seed in zip(trials, seeds, strict=True)]
-    assert [one.digest for one in together] == [one.digest for one in alone]
-    assert [one.outcome for one in together] == [one.outcome for one in alone]
-    assert [repr(dict(one.metrics)) for one in together] == [repr(dict(one.metrics)) for one in alone]
-    assert len({one.digest for one in together}) == 5
+    assert [item.digest for item in together] == [item.digest for item in alone]
+    assert [item.outcome for item in together] == [item.outcome for item in alone]
+    assert [repr(dict(item.metrics)) for item in together] == [repr(dict(item.metrics)) for item in alone]
+    assert len({item.digest for item in together}) == 5
 
 
 @pytest.mark.parametrize("text", [FLOW, room("physics", LEAN)])
@@ -44,7 +44,7 @@ def test_variants_with_sources_and_bodies(text: str) -> None:
     changes = [{}, {f"robot[{name}]/goal/x": 5.0}] if name else [{}, {"spawner[hall]/zone": "-4,-2 -3,-2 -3,2 -4,2"}]
     trials = [apply_values(trial, change) for change in changes]
     together = simulate_variants(trials, [3, 3])
-    assert [one.digest for one in together] == [simulate(one, 3).digest for one in trials]
+    assert [item.digest for item in together] == [simulate(trial, 3).digest for trial in trials]
 
 
 def test_variants_are_restarted_selected_and_put_with_their_own_values() -> None:
@@ -72,7 +72,9 @@ def test_a_sweep_over_a_model_runs_as_one_simulation() -> None:
     many = expand_sweeps(
         dataclasses.replace(trial, sweeps=parse_trial(GOOD.replace("</trial>", text + "</trial>")).sweeps)
     )
-    assert [one.digest for one in simulate_variants(many, [1] * 3)] == [simulate(one, 1).digest for one in many]
+    assert [variant.digest for variant in simulate_variants(many, [1] * 3)] == [
+        simulate(item, 1).digest for item in many
+    ]
 
 
 @pytest.mark.parametrize(

@@ -17,14 +17,14 @@ def tool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     spec = importlib.util.spec_from_file_location("navigators_tool", TOOL)
     assert spec is not None
     assert spec.loader is not None
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
+    module_type = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module_type)
     page = tmp_path / "page.md"
-    page.write_text(found.PAGE.read_text(encoding="utf-8"), encoding="utf-8")
-    monkeypatch.setattr(found, "PAGE", page)
-    monkeypatch.setattr(found, "QUICK_OTHERS", ["straight"])
+    page.write_text(module_type.PAGE.read_text(encoding="utf-8"), encoding="utf-8")
+    monkeypatch.setattr(module_type, "PAGE", page)
+    monkeypatch.setattr(module_type, "QUICK_OTHERS", ["straight"])
     monkeypatch.chdir(tmp_path)
-    return found
+    return module_type
 
 
 def test_the_page_is_what_the_tool_writes_from_its_rows(tool: ModuleType) -> None:

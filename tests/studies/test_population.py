@@ -65,18 +65,18 @@ def test_experiments_are_read_by_name_with_a_cart_that_keeps_its_path(recordings
 
 def test_people_who_walk_straight_and_apart_are_predicted_exactly(recordings):
     for experiment in read_experiments(recordings, windows=2):
-        found = measure_tracks(ORCA(), [{}], experiment)
-        assert found.early.shape == found.mean.shape == (1, len(found.person))
-        assert found.mean.max() < 1e-6
-        assert np.array_equal(found.ttc[0], found.ttc_real)
+        tracks = measure_tracks(ORCA(), [{}], experiment)
+        assert tracks.early.shape == tracks.mean.shape == (1, len(tracks.person))
+        assert tracks.mean.max() < 1e-6
+        assert np.array_equal(tracks.ttc[0], tracks.ttc_real)
 
 
 def test_parameter_sets_do_not_influence_each_other(recordings):
     experiment = read_experiments(recordings, windows=2)[1]
     sets = [{"strength": 2.0}, {"strength": 9.0}]
     both = measure_tracks(People(), sets, experiment)
-    alone = [measure_tracks(People(), [one], experiment) for one in sets]
-    assert np.array_equal(both.mean, np.concatenate([one.mean for one in alone]))
+    alone = [measure_tracks(People(), [set_], experiment) for set_ in sets]
+    assert np.array_equal(both.mean, np.concatenate([item.mean for item in alone]))
 
 
 def test_values_of_crowds_are_those_of_each_set_alone(monkeypatch):
@@ -85,7 +85,7 @@ def test_values_of_crowds_are_those_of_each_set_alone(monkeypatch):
     monkeypatch.setattr(crowd_values, "POOR", -1.0)  # no doors
     sets = [{"headway_time_gap": 1.0}, {"headway_time_gap": 2.0}]
     both = crowd_values.measure_crowds(People(), sets)
-    assert both == [crowd_values.measure_crowds(People(), [one])[0] for one in sets]
+    assert both == [crowd_values.measure_crowds(People(), [set_])[0] for set_ in sets]
     assert both[0].single_file != both[1].single_file
     assert both[0].stuck == 1.0
 
@@ -105,12 +105,12 @@ class MadeFit(PopulationFit):
 
     def measure(self, rows):
         MadeFit.calls += len(rows)
-        found = []
-        for one in rows:
-            error = 1.0 + 100.0 * (one["range"] - 0.05) ** 2
+        result = []
+        for row in rows:
+            error = 1.0 + 100.0 * (row["range"] - 0.05) ** 2
             tracks = {e.name: (error, error + 0.01 * k, 0.1) for k, e in enumerate(self.experiments)}
-            found.append(Candidate(one, tracks, CrowdValues(0.05, 0.1, 1.9, 0.5, (30.0, 0.0), 45.0, 0.0)))
-        return found
+            result.append(Candidate(row, tracks, CrowdValues(0.05, 0.1, 1.9, 0.5, (30.0, 0.0), 45.0, 0.0)))
+        return result
 
 
 def test_a_search_finds_the_minimum_and_continues(recordings, tmp_path):
@@ -132,7 +132,7 @@ def test_a_search_finds_the_minimum_and_continues(recordings, tmp_path):
 def test_the_report_tells_what_is_identified(recordings, tmp_path):
     fit = MadeFit(People(), read_experiments(recordings, windows=1), tmp_path / "state.jsonl")
     best = fit.search("one", [MIDDLE], 80, 0.2)
-    profiles = {one.name: one for one in profile_sets(fit, best)}
+    profiles = {set_.name: set_ for set_ in profile_sets(fit, best)}
     low, high = profiles["range"].interval
     assert low <= best.values["range"] <= high
     assert profiles["range"].identified == "yes"

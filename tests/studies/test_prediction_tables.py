@@ -121,7 +121,7 @@ def run(
 
 def rows(folder: Path, part: str) -> dict[str, dict]:
     kept = [json.loads(file.read_text(encoding="utf-8")) for file in (folder / "parts").glob(f"{part}-*.json")]
-    return {one["name"]: one["row"] for one in kept}
+    return {item["name"]: item["row"] for item in kept}
 
 
 def test_leave_one_out_has_the_errors_of_the_recordings_and_resumes(run: Tool, tiny: Path, tmp_path: Path) -> None:
@@ -237,13 +237,13 @@ def test_one_command_trains_the_reaction_anew(
     monkeypatch.setattr(sys, "argv", ["train_plan_reaction.py", "train", str(tiny), str(tmp_path), *["--citr"] * citr])
     trainer.main()
     file = tmp_path / ("plan-reaction-citr.npz" if citr else "plan-reaction-open.npz")
-    found = load_reaction(str(file))
-    assert found["reaction_room"] == trainer.ROOM
-    assert np.any(found["reaction_lateral"] != 0.0)
+    reaction = load_reaction(str(file))
+    assert reaction["reaction_room"] == trainer.ROOM
+    assert np.any(reaction["reaction_lateral"] != 0.0)
     monkeypatch.setattr(sys, "argv", ["train_plan_reaction.py", "train", str(tiny), str(tmp_path), *["--citr"] * citr])
     trainer.main()
     again = load_reaction(str(file))
-    assert all(np.array_equal(values, again[name]) for name, values in found.items())
+    assert all(np.array_equal(values, again[name]) for name, values in reaction.items())
 
 
 def test_the_shipped_reaction_has_the_room_of_the_tool(tool: ModuleType) -> None:

@@ -63,7 +63,7 @@ def test_noise_is_centred_and_made_larger() -> None:
     there, _ = centred.generator(lesson.sight, noise, 2)
     same, _ = plain.generator(lesson.sight, 0.25 * math.sqrt(12.0) * torch.ones_like(noise), 2)
     torch.testing.assert_close(there, same)
-    few, many = (sample_futures(one, 200, stream(0, "drawn")).std(axis=1).mean() for one in (plain, centred))
+    few, many = (sample_futures(item, 200, stream(0, "drawn")).std(axis=1).mean() for item in (plain, centred))
     assert many > 3.0 * few  # before anything is learned
 
 
@@ -160,9 +160,9 @@ def test_a_study_goes_seed_by_seed_and_resumes_to_the_same_runs(tmp_path: Path) 
     again = list(study.run(tmp_path))
     fresh = list(study.run())
     assert [(run.method, run.seed) for run in again[2:]] == [("info+slope-penalty", 1), ("vanilla", 1)]
-    for one, other in zip(again, fresh, strict=True):
-        np.testing.assert_array_equal(one.drawn, other.drawn)
-        assert list(one.update) == [2, 4]
+    for item, other in zip(again, fresh, strict=True):
+        np.testing.assert_array_equal(item.drawn, other.drawn)
+        assert list(item.update) == [2, 4]
     assert [row["seeds"] for row in GanComparison.rows(again)] == [2, 2]
 
 

@@ -43,7 +43,7 @@ def made_study():
 
 
 def test_profiles_tell_which_values_the_data_determine():
-    found = {one.name: one for one in made_study().profiles()}
+    found = {profile.name: profile for profile in made_study().profiles()}
     assert found["strength"].identified == "yes"
     assert found["strength"].interval == (8.0, 8.0)
     assert found["headway_time_gap"].identified == "not from below"

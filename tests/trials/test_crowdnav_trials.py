@@ -103,7 +103,7 @@ def test_people_begin_at_rest_and_the_robot_sees_all_of_them() -> None:
 
 def test_a_batch_gives_the_episodes_of_its_seeds() -> None:
     trial = load_trial("crowdnav-circle-5", duration=8.0)
-    assert [one.digest for one in simulate_seeds(trial, [1, 2, 3])] == [simulate(trial, s).digest for s in (1, 2, 3)]
+    assert [seed.digest for seed in simulate_seeds(trial, [1, 2, 3])] == [simulate(trial, s).digest for s in (1, 2, 3)]
 
 
 def published(trial: Trial, method: str, cases: int) -> tuple[float, float, float]:

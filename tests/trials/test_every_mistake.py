@@ -29,7 +29,7 @@ def compared(kinds: list[Kind]) -> list[str]:
     left = problems(text)
     missed = []
     for line, words in said:
-        told = next((one for one in left if re.match(rf"t\.xml:{line}: {words}", one)), None)
+        told = next((item for item in left if re.match(rf"t\.xml:{line}: {words}", item)), None)
         if told is None:
             missed.append(f"not told: {line}: {words}")
         else:
@@ -94,7 +94,7 @@ def test_mistakes_in_trials_that_ship_are_all_told(name: str) -> None:
     for seed in range(4):
         spoilt_text, lines = spoilt(text, random.Random(f"{name} {seed}"))
         told = problems(spoilt_text)
-        assert [int(one.split(":")[1]) for one in told] == sorted(lines), (spoilt_text, told)
+        assert [int(item.split(":")[1]) for item in told] == sorted(lines), (spoilt_text, told)
 
 
 def test_what_is_misspelt_is_there_for_others() -> None:
@@ -112,7 +112,7 @@ def test_what_is_misspelt_is_there_for_others() -> None:
         assert old in FLOW
         told = problems(FLOW.replace(old, new, 1))
         line = FLOW[: FLOW.index(old)].count("\n") + 1
-        assert {one.split(":")[1] for one in told} == {str(line)}, told
+        assert {item.split(":")[1] for item in told} == {str(line)}, told
 
 
 def test_the_whole_range_is_told() -> None:
@@ -148,4 +148,4 @@ def test_mistakes_in_an_experiment_are_told_at_once_first_those_of_values() -> N
     ):
         with pytest.raises(TrialError) as found:
             parse_experiment(text, place="e.xml")
-        assert [int(one.split(":")[1]) for one in found.value.problems] == lines, found.value.problems
+        assert [int(problem.split(":")[1]) for problem in found.value.problems] == lines, found.value.problems

@@ -41,7 +41,7 @@ def _text(**values: object) -> bytes:
 
 def test_a_trial_with_ground_and_doors_is_written_as_it_is_read() -> None:
     trial = parse_trial(_text())
-    assert [type(one) for one in trial.stage.ground] == [Threshold, Ramp, Platform, Stairs]
+    assert [type(item) for item in trial.stage.ground] == [Threshold, Ramp, Platform, Stairs]
     assert parse_trial(trial_xml(trial).encode()) == trial
     assert trial.stage.physical().doors[0].times == (1.0, 3.0)
 
@@ -62,10 +62,12 @@ def test_the_planar_world_takes_doors() -> None:
 
 
 def test_a_robot_is_told_what_it_cannot_pass() -> None:
-    assert not any("straight way" in one for one in trial_remarks(parse_trial(_text(goal=3))))
-    (told,) = [one for one in trial_remarks(parse_trial(_text(goal=3, sill=0.02, robot="turtlebot2"))) if "way" in one]
+    assert not any("straight way" in remark for remark in trial_remarks(parse_trial(_text(goal=3))))
+    (told,) = [
+        remark for remark in trial_remarks(parse_trial(_text(goal=3, sill=0.02, robot="turtlebot2"))) if "way" in remark
+    ]
     assert "passes steps up to 1.2 cm and slopes up to 12 %" in told
-    (told,) = [one for one in trial_remarks(parse_trial(_text(goal=3, robot="pepper"))) if "way" in one]
+    (told,) = [remark for remark in trial_remarks(parse_trial(_text(goal=3, robot="pepper"))) if "way" in remark]
     assert "its base is pulled along the floor" in told
 
 

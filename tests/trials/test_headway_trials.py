@@ -80,7 +80,7 @@ def test_a_model_in_a_file_takes_the_layer(tmp_path):
 def test_nobody_runs_into_the_person_ahead_in_either_world(world):
     trial = dataclasses.replace(parse("people"), world=world)
     tracks = run(trial, seed=0).tracks(dt=0.1)
-    slow, fast = ((tracks.x[tracks.id == one], tracks.y[tracks.id == one]) for one in np.unique(tracks.id))
+    slow, fast = ((tracks.x[tracks.id == item], tracks.y[tracks.id == item]) for item in np.unique(tracks.id))
     distance = np.hypot(slow[0] - fast[0], slow[1] - fast[1])
     assert len(distance) > 30
     assert distance.min() > 0.38

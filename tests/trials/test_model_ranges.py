@@ -19,12 +19,12 @@ def remarks(model, step="0.05", substeps="1", count="20"):
 
 def test_every_builtin_model_has_a_range_with_sources():
     built_in = {*builtin_classes(models, CrowdModel)} - {kebab_case(Mixture.__name__)}
-    assert built_in <= {one.model for one in MODEL_RANGES}
-    assert len({one.model for one in MODEL_RANGES}) == len(MODEL_RANGES)
-    for one in MODEL_RANGES:
-        assert one.max_density > 0.0
-        assert one.max_step > 0.0
-        assert all((one.why, one.density_source, one.step_source))
+    assert built_in <= {item.model for item in MODEL_RANGES}
+    assert len({item.model for item in MODEL_RANGES}) == len(MODEL_RANGES)
+    for item in MODEL_RANGES:
+        assert item.max_density > 0.0
+        assert item.max_step > 0.0
+        assert all((item.why, item.density_source, item.step_source))
 
 
 def test_a_trial_within_the_range_has_no_remark():
@@ -47,7 +47,7 @@ def test_a_dense_trial_is_named_with_what_happens():
 
 def test_crowds_and_own_models():
     crowds = Crowds((ORCA(), CollisionFreeSpeed()), names=("a", "b"))
-    assert [model_range(one).model for one in crowds.models] == ["orca", "collision-free-speed"]
+    assert [model_range(model).model for model in crowds.models] == ["orca", "collision-free-speed"]
 
     class Orca(ORCA):
         """Own model with the name of a built-in one."""

@@ -65,7 +65,7 @@ def test_a_trial_is_carried_over(tmp_path: Path) -> None:
 def test_axes_and_degrees_are_converted(tmp_path: Path) -> None:
     ((_, trial),) = import_original(written(tmp_path, TRIAL)).trials
     first, second, standing, straight, _ = trial.agents
-    assert [one.position for one in (first, second)] == [(0.0, -3.0), (1.0, -4.0)]
+    assert [item.position for item in (first, second)] == [(0.0, -3.0), (1.0, -4.0)]
     # it looks from 2,5 to 2,9 of the file, which is from 2,-5 to 2,-9 here
     assert standing.heading == pytest.approx(-math.pi / 2.0)
     assert standing.facing == standing.heading

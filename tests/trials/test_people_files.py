@@ -180,11 +180,11 @@ def test_sweeps_make_variants() -> None:
     assert parse_trial(trial_xml(many)) == many
     ones = expand_sweeps(many)
     assert len(ones) == 12
-    assert len({one.name for one in ones}) == 12
-    assert [one.spawners[1].count for one in ones] == [1] * 4 + [2] * 4 + [3] * 4
+    assert len({item.name for item in ones}) == 12
+    assert [item.spawners[1].count for item in ones] == [1] * 4 + [2] * 4 + [3] * 4
     assert isinstance(ones[2].crowd, RandomizedModel)
-    assert [one.end.goal for one in ones[:2]] == [True, False]
-    assert not any(one.sweeps for one in ones)
+    assert [item.end.goal for item in ones[:2]] == [True, False]
+    assert not any(item.sweeps for item in ones)
     with pytest.raises(TrialError, match="has 12 variants in its sweeps; run one of them"):
         run(many)
     plain = parse_trial(GOOD)

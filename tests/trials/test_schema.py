@@ -79,6 +79,8 @@ def test_every_element_and_attribute_has_words_for_people() -> None:
     root = etree.fromstring(schema().encode())
     space = {"xs": "http://www.w3.org/2001/XMLSchema"}
     for kind in ("attribute", "complexType"):
-        named = [one for one in root.iterfind(f".//xs:{kind}", space) if one.get("name") and one.get("name") != "type"]
+        named = [
+            item for item in root.iterfind(f".//xs:{kind}", space) if item.get("name") and item.get("name") != "type"
+        ]
         assert len(named) > 10
-        assert all(one.find("xs:annotation/xs:documentation", space).text for one in named)
+        assert all(item.find("xs:annotation/xs:documentation", space).text for item in named)

@@ -28,7 +28,7 @@ def trial() -> Trial:
 def value(path: str, root: Element) -> str:
     """Return the attribute at ``tag number attribute``."""
     tag, number, word = path.split()
-    return [one for one in root.children if one.tag == tag][int(number)].attributes[word]
+    return [child for child in root.children if child.tag == tag][int(number)].attributes[word]
 
 
 def tree() -> Element:
@@ -121,7 +121,7 @@ def test_a_robot_is_set_by_the_name_that_is_its_default(trial: Trial) -> None:
 def test_an_element_that_is_missing_is_made() -> None:
     root = tree()
     set_values(root, Trial, {"robot[tim]/navigator/speed": "0.5", "robot[tim]/navigator/type": "straight"})
-    navigator = next(one for one in root.children[2].children if one.tag == "navigator")
+    navigator = next(child for child in root.children[2].children if child.tag == "navigator")
     assert navigator.attributes == {"type": "straight", "speed": "0.5"}
 
 

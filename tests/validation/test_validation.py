@@ -255,9 +255,9 @@ def test_progress_is_told_for_each_model(done):
 
 
 def test_a_model_that_fails_is_told_not_hidden(done):
-    verdicts = [one.verdict for one in done[1].outcomes["lost"].values()]
+    verdicts = [item.verdict for item in done[1].outcomes["lost"].values()]
     assert not any(verdict.passed for verdict in verdicts)
-    words = [one.verdict.words for name, one in done[1].outcomes["lost"].items() if name != "time-step"]
+    words = [item.verdict.words for name, item in done[1].outcomes["lost"].items() if name != "time-step"]
     assert all("positions are not finite after 0.1 s" in text for text in words)
     assert done[1].outcomes["lost"]["time-step"].verdict.words == "the model is unstable at every time step"
 
@@ -327,5 +327,5 @@ def test_the_command_writes_the_page(done, capsys):
     assert "of 11" in shown.out
     options.json = True
     assert command.main(options) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["models"]["orca"]["single-file"]["passed"] is False
+    loads = json.loads(capsys.readouterr().out)
+    assert loads["models"]["orca"]["single-file"]["passed"] is False

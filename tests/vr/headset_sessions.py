@@ -43,7 +43,7 @@ def open_session(folder, files):
     for name, text in files.items():
         (folder / name).write_text(text)
     desks = tuple(
-        type("SimulatorDesk", (one,), {"first": "meet.xml"}) if one.name == "simulator" else one for one in VR_DESKS
+        type("SimulatorDesk", (item,), {"first": "meet.xml"}) if item.name == "simulator" else item for item in VR_DESKS
     )
     loop = asyncio.new_event_loop()
     made = AppSession("main", Workspace(folder), desks, loop)
@@ -54,11 +54,11 @@ def open_session(folder, files):
 
 def until(check):
     end = time.monotonic() + 240
-    while not (found := check()):
+    while not (result := check()):
         if time.monotonic() > end:
             raise TimeoutError("nothing happens within 240 s")
         time.sleep(0.03)
-    return found
+    return result
 
 
 def phase(desk, *wanted):

@@ -26,7 +26,7 @@ def turn(yaw, pitch=0.0):
 
 
 def sample(time, head=(0.0, 0.0, None), yaw=0.0, pitch=0.0, **hands):
-    head = [SIZE.eye_height if one is None else one for one in head]
+    head = [SIZE.eye_height if item is None else item for item in head]
     return HeadsetSample.of_frame(StateFrame.decode(message(time, head, turn(yaw, pitch), **hands)))
 
 

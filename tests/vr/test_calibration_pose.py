@@ -34,30 +34,30 @@ def samples(body="man-30", stature=1.75, stretch=1.0, down=0.0, heading=0.3, noi
 def test_stature_and_arms_are_those_of_the_person(body, down, word):
     stature = 1.4 if body.startswith("girl") else 1.72
     rows, arm = samples(body, stature, down=down, noise=0.003)
-    found = measure_pose(rows, body)
-    assert found.pose == word
-    assert found.stature == pytest.approx(stature, abs=0.005)
-    assert found.arm == pytest.approx(arm, abs=0.005)
-    assert abs(found.difference) < 0.012
+    pose = measure_pose(rows, body)
+    assert pose.pose == word
+    assert pose.stature == pytest.approx(stature, abs=0.005)
+    assert pose.arm == pytest.approx(arm, abs=0.005)
+    assert abs(pose.difference) < 0.012
 
 
 def test_another_body_of_the_same_kind_is_taken_if_its_arms_fit_better():
     own = {name: float(People.of([name], height=1.75).measures.arm[0].sum()) for name in ("man-20", "man-79", "man-50")}
     longest, shortest = max(own, key=own.get), min(own, key=own.get)
     rows, arm = samples(shortest, 1.75, stretch=own[longest] / own[shortest])
-    found = measure_pose(rows, shortest)
-    assert found.body.startswith("man-")
-    assert abs(found.difference) <= own[longest] - own[shortest]
+    pose = measure_pose(rows, shortest)
+    assert pose.body.startswith("man-")
+    assert abs(pose.difference) <= own[longest] - own[shortest]
     if own[longest] - own[shortest] > 0.02:
-        assert found.body != shortest
-    assert found.arm == pytest.approx(arm, abs=0.003)
+        assert pose.body != shortest
+    assert pose.arm == pytest.approx(arm, abs=0.003)
 
 
 def test_poses_that_are_none_are_refused():
     rows, _ = samples()
     for wrong, text in (
         (rows[:20], "head and both hands must be tracked"),
-        ([HeadsetSample(one.time, one.head, one.left, None) for one in rows], "head and both hands must be tracked"),
+        ([HeadsetSample(row.time, row.head, row.left, None) for row in rows], "head and both hands must be tracked"),
         (samples(noise=0.06)[0], "moves: hold the pose still"),
         (samples(down=1.45)[0], "neither a T nor an A pose"),
         (samples(down=-0.9)[0], "neither a T nor an A pose"),
@@ -68,6 +68,6 @@ def test_poses_that_are_none_are_refused():
                 measure_pose(wrong, "man-30")
         else:
             assert measure_pose(wrong, "man-30").stature == pytest.approx(1.0, abs=0.005)
-    low = [HeadsetSample(one.time, one.head - [0, 0, 1.5, 0, 0, 0, 0], one.left, one.right) for one in rows]
+    low = [HeadsetSample(row.time, row.head - [0, 0, 1.5, 0, 0, 0, 0], row.left, row.right) for row in rows]
     with pytest.raises(InputError, match="set the floor of the headset first"):
         measure_pose(low, "man-30")

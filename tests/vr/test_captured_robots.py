@@ -39,7 +39,7 @@ def test_motion_capture_takes_the_place_of_the_odometry_of_a_real_robot(table):
         try:
             assert isinstance(link, RealRobotLink)
             rest = link_captures(captures.captures_of(trial, origin=lambda: (10.0, 1.0, np.pi / 2)), [link])
-            assert [binding.target for one in rest for binding in one.bindings] == ["guest"]
+            assert [binding.target for item in rest for binding in item.bindings] == ["guest"]
             found = []
             for _ in range(8):
                 found += link.orders(simulation)
@@ -84,7 +84,7 @@ def test_a_session_on_the_command_line_is_moved_by_motion_capture(table, tmp_pat
     assert main([*words, *more]) == 0
     episode = tmp_path / "data" / "participant-001" / "001-meet" / "episode.mcap"
     orders = [order for _, order in read_episode(episode).orders]
-    assert all(isinstance(one, AvatarOrder) and one.avatar == "guest" for one in orders)
+    assert all(isinstance(order, AvatarOrder) and order.avatar == "guest" for order in orders)
     assert orders[-1].x == pytest.approx(3.5, abs=0.03)
     assert replay(episode).equal
     assert main([*words, "--mocap", "xsens:0=guest", "--rate", "2"]) == 2

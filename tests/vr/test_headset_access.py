@@ -20,7 +20,7 @@ def play(story, folder):
     folder.mkdir()
     (folder / "meet.xml").write_text(TRIAL)
     desks = tuple(
-        type("SimulatorDesk", (one,), {"first": "meet.xml"}) if one.name == "simulator" else one for one in VR_DESKS
+        type("SimulatorDesk", (item,), {"first": "meet.xml"}) if item.name == "simulator" else item for item in VR_DESKS
     )
 
     async def main():
@@ -93,10 +93,10 @@ def test_the_window_of_a_headset_may_look_answer_and_stop_only(tmp_path):
                     message = await asyncio.wait_for(socket.receive(), 60)
                     if message.type != aiohttp.WSMsgType.TEXT:
                         continue
-                    found = json.loads(message.data)
-                    if found.get("id") == number:
-                        return found
-                    seen.add(found["event"])
+                    loads = json.loads(message.data)
+                    if loads.get("id") == number:
+                        return loads
+                    seen.add(loads["event"])
 
             hello = json.loads((await socket.receive()).data)
             seen = set()
@@ -123,5 +123,5 @@ def test_the_window_of_a_headset_may_look_answer_and_stop_only(tmp_path):
 @pytest.mark.parametrize("name", sorted(HEADSET_COMMANDS))
 def test_the_commands_of_a_headset_exist(name):
     desk, _, command = name.partition(".")
-    kind = next(one for one in VR_DESKS if one.name == desk)
+    kind = next(item for item in VR_DESKS if item.name == desk)
     assert getattr(getattr(kind, command), "__command__", False)

@@ -106,11 +106,11 @@ def test_a_real_robot_drives_beside_a_headset_and_stops_with_the_pause(tmp_path)
         run = desk._run
         until(lambda: speed_of(run) > 0.3)
         vr.pause()
-        assert any("robot 'robot' is stopped: the stop button" in one for one in vr.state()["warnings"])
+        assert any("robot 'robot' is stopped: the stop button" in item for item in vr.state()["warnings"])
         assert phase(desk, "pause")
         vr.resume()
         until(lambda: speed_of(run) > 0.3)
-        assert not any("is stopped" in one for one in vr.state()["warnings"])
+        assert not any("is stopped" in item for item in vr.state()["warnings"])
         assert vr.stop_robots() == ["robot"]
         until(lambda: speed_of(run) < 1e-3)
         vr.release_robots()

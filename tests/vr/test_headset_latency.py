@@ -40,7 +40,7 @@ class Rig:
             arrival = time + network(self.random)
             exchange = (self.headset(time), arrival, arrival, self.headset(arrival + network(self.random)))
             messages.append((arrival, sample))
-        messages.sort(key=lambda one: one[0])
+        messages.sort(key=lambda message: message[0])
         for step in np.arange(1.0, seconds, 0.05):
             while messages and messages[0][0] <= step:
                 self.stream.add(messages[0][1], messages[0][0])
@@ -113,7 +113,7 @@ def test_noise_has_its_standard_deviation_and_the_same_seed_the_same_values():
         stream = HeadsetStream(StreamSettings(noise=0.02, buffer=0.0), seed=3)
         for k in range(2000):
             stream.add(HeadsetSample(0.001 * k, HEAD, number=k, clock=(0.0, 0.0, 0.0, 0.0)), 0.001 * k)
-        rows = np.array([one.head[:3] for one in stream._samples]) - HEAD[:3]
+        rows = np.array([sample.head[:3] for sample in stream._samples]) - HEAD[:3]
         found.append(rows)
     assert found[0].std() == pytest.approx(0.02, rel=0.05)
     assert (found[0] == found[1]).all()

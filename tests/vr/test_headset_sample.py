@@ -89,10 +89,10 @@ def test_changed_bytes_never_end_the_server(place, value):
     data = bytearray(message(1.0, left=(0.3, 0.2, 1.0), clock=np.arange(4.0)))
     data[place % len(data)] = value
     try:
-        found = HeadsetSample.of_frame(StateFrame.decode(bytes(data)))
+        frame = HeadsetSample.of_frame(StateFrame.decode(bytes(data)))
     except CrowdbotError:
         return
-    assert found.head is None or np.all(np.isfinite(found.head))
+    assert frame.head is None or np.all(np.isfinite(frame.head))
 
 
 def test_samples_are_blended():

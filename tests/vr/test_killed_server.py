@@ -86,8 +86,8 @@ def test_a_killed_server_loses_no_raw_data_and_the_session_continues(tmp_path):
     assert isinstance(ending, TypeError | aiohttp.ClientError | ConnectionError)  # no answer comes any more
     home = folder / "experiments" / "visit" / "participant-001"
     raw = list(read_headset_recording(home / "001-meet" / "guest.headset"))
-    assert sum(one.sample is not None for one in raw) > 20
-    assert sum(one.note is not None and "step" in one.note for one in raw) > 20
+    assert sum(item.sample is not None for item in raw) > 20
+    assert sum(item.note is not None and "step" in item.note for item in raw) > 20
     assert read_log(home / "session.jsonl")  # the last line is whole
     episode = home / "001-meet" / "episode.mcap"
     assert main(["repair", str(episode)]) == 0

@@ -67,16 +67,16 @@ class EmulatedFollower:
 
 def answers_of(questions):
     """Return an answer to each question of a screen."""
-    found = {}
-    for one in questions:
-        kind = one["kind"]
+    result = {}
+    for question in questions:
+        kind = question["kind"]
         if kind == "choice":
-            found[one["name"]] = one["options"][0]["value"]
+            result[question["name"]] = question["options"][0]["value"]
         elif kind == "scale":
-            found[one["name"]] = one["steps"][-1]
+            result[question["name"]] = question["steps"][-1]
         elif kind == "number":
-            found[one["name"]] = 30
-    return found
+            result[question["name"]] = 30
+    return result
 
 
 @pytest.mark.live

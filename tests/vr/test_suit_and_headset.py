@@ -162,15 +162,15 @@ def test_one_trial_without_and_one_with_a_headset(tmp_path):
     assert len(found) > 20
     assert all(found)
     assert not (real / "guest.headset").exists()
-    raw = [one.note for one in read_headset_recording(real / "motion-capture.headset")]
+    raw = [item.note for item in read_headset_recording(real / "motion-capture.headset")]
     assert len(raw) >= len(found)
-    assert all(len(one["position"]) == 23 and len(one["rotation"]) == 23 for one in raw)
+    assert all(len(item["position"]) == 23 and len(item["rotation"]) == 23 for item in raw)
     both = skeletons(virtual / "episode.mcap")
     assert sum(both) > 10
     assert not both[-1]
     orders = [order for _, order in read_episode(virtual / "episode.mcap").orders if order.skeleton is not None]
     assert all(order.head is not None for order in orders)
-    notes = [one.note for one in read_headset_recording(virtual / "guest.headset") if one.note]
-    assert sum("suit" in one for one in notes) == sum(both)
+    notes = [item.note for item in read_headset_recording(virtual / "guest.headset") if item.note]
+    assert sum("suit" in note for note in notes) == sum(both)
     assert replay(virtual / "episode.mcap").equal
     assert replay(real / "episode.mcap").equal

@@ -43,12 +43,12 @@ def test_a_session_from_consent_to_the_answer_and_its_withdrawal(session):
     bones = {"left": (0.0, 0.70, 1.42), "right": (0.0, -0.70, 1.42)}
     guest.head, guest.hands = (0.0, 0.0, 1.63), bones
     until(lambda: len(guest.person.history(40)) == 40 and guest.person.history(40)[0].left is not None)
-    found = vr.take_pose("guest")
-    assert found.pose == "T"
+    pose = vr.take_pose("guest")
+    assert pose.pose == "T"
     guest.head, guest.hands = (0.1, 0.0, 1.6), {}
     desk.finish_screen(index, {"agree": "yes"})
     state = phase(desk, "screen")
-    assert [one["name"] for one in state["questions"]] == ["comfort"]
+    assert [item["name"] for item in state["questions"]] == ["comfort"]
     guest.head = (0.2, 0.0, 1.6)
     desk.finish_screen(state["index"], {"comfort": 4})
     assert phase(desk, "done")
@@ -61,7 +61,7 @@ def test_a_session_from_consent_to_the_answer_and_its_withdrawal(session):
     orders = [order for _, order in read_episode(episode).orders]
     assert {order.avatar for order in orders} == {"guest"}
     assert replay(episode).equal
-    assert f'height="{found.stature}"' in read_episode(episode).metadata["trial"]
+    assert f'height="{pose.stature}"' in read_episode(episode).metadata["trial"]
     raw = list(read_headset_recording(one / "001-meet" / "guest.headset"))
     assert sum(record.sample is not None for record in raw) > 10
     steps = [record.note for record in raw if record.note and "step" in record.note]
@@ -106,7 +106,7 @@ def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     del guest.person.take
     vr.resume()
     assert phase(desk, "running")
-    until(lambda: not any("tracking" in one for one in vr.state()["warnings"]))
+    until(lambda: not any("tracking" in item for item in vr.state()["warnings"]))
     guest.stop(cut=True)
     assert phase(desk, "pause")["reason"] == "guest is gone"
     again = Headset(vr)  # the net is back: the same avatar, another file
@@ -118,7 +118,7 @@ def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     again.stop()
     desk.abort("the test is over")
     until(lambda: not vr.state()["experiment"])
-    names = sorted(one.name for one in folder.rglob("participant-001/*/*.headset"))
+    names = sorted(item.name for item in folder.rglob("participant-001/*/*.headset"))
     assert names == ["guest-2.headset", "guest.headset"]
 
 

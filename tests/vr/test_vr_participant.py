@@ -77,7 +77,7 @@ def test_the_beams_of_a_scanner_end_on_the_arm_within_2_cm(bodies):
     for _ in range(12):
         player.step()
     simulation = player.run.simulation
-    reading = next(one for _, _, one in simulation.new_readings())
+    reading = next(item for _, _, item in simulation.new_readings())
     people = worlds_of(simulation.world)[0].people
     wrist = people.posture().position[0, 16]
     true = player.person.rooms.rooms["person"].place.apply(hand)
@@ -92,7 +92,7 @@ def test_the_beams_of_a_scanner_end_on_the_arm_within_2_cm(bodies):
     assert near.sum() >= 3
     skin = people.skin(0)[0]
     gaps = [np.linalg.norm(skin - end, axis=1).min() for end in ends[near]]
-    print(f"bodies={bodies or 'default'}: beam to skin {[round(float(1e3 * one), 1) for one in gaps]} mm")
+    print(f"bodies={bodies or 'default'}: beam to skin {[round(float(1e3 * gap), 1) for gap in gaps]} mm")
     assert max(gaps) < 0.02
     assert ends[near][:, 0].min() == pytest.approx(fingers[0], abs=0.06)
     assert elbow[0] > wrist[0]
@@ -128,7 +128,7 @@ def test_a_push_against_a_robot_is_felt_with_its_force_and_side():
     assert first["force"] > 0.0
     assert 0.25 <= first["strength"] <= 1.0
     assert first["limb"]
-    assert sum(one["begins"] for one in player.felt) < len(player.felt)
+    assert sum(item["begins"] for item in player.felt) < len(player.felt)
 
 
 def test_a_contact_in_the_plane_has_the_force_of_the_two_body_model():
@@ -161,13 +161,13 @@ def test_a_recorded_participant_replays_without_a_headset(tmp_path):
     people, number, _ = avatar_body(Simulation(trial), "guest")
     stream, estimator = type(player.person.stream)(), BodyEstimator(BodySize.of(people, number))
     again = []
-    for one in read_headset_recording(tmp_path / "raw.headset"):
-        if one.sample is not None:
-            stream.add(one.sample, one.time)
-        elif "step" in one.note:
-            again.append(estimator.update(stream.at(one.time), player.person.rooms.rooms["person"].place))
-    assert [one.row().tolist() for one in again] == [one.pose.row().tolist() for one in orders] or np.allclose(
-        [one.row() for one in again], [one.pose.row() for one in orders], equal_nan=True, atol=1e-12
+    for item in read_headset_recording(tmp_path / "raw.headset"):
+        if item.sample is not None:
+            stream.add(item.sample, item.time)
+        elif "step" in item.note:
+            again.append(estimator.update(stream.at(item.time), player.person.rooms.rooms["person"].place))
+    assert [item.row().tolist() for item in again] == [order.pose.row().tolist() for order in orders] or np.allclose(
+        [item.row() for item in again], [order.pose.row() for order in orders], equal_nan=True, atol=1e-12
     )
 
 
@@ -185,15 +185,15 @@ def test_gaze_and_clocks_of_a_headset_are_in_the_episode_and_in_its_recording(tm
     orders = [order for _, order in read_episode(tmp_path / "one/episode.mcap").orders]
     assert len(orders) > 50
     assert np.array([order.gaze for order in orders]) == pytest.approx(np.array([[c, s, 0.0]] * len(orders)), abs=1e-6)
-    samples = [one for one in read_headset_recording(tmp_path / "raw.headset") if one.sample is not None]
-    assert all(one.sample.gaze == pytest.approx([c, s, 0.0], abs=1e-6) for one in samples)
+    samples = [item for item in read_headset_recording(tmp_path / "raw.headset") if item.sample is not None]
+    assert all(sample.sample.gaze == pytest.approx([c, s, 0.0], abs=1e-6) for sample in samples)
     clock = read_headset_clock(tmp_path / "raw.headset")
     assert len(clock.server) == 3  # 60 steps of 50 ms, one estimate in a second
     assert clock.offset == pytest.approx(-OFFSET, abs=1e-9)
     assert clock.round_trip == pytest.approx(0.0, abs=1e-9)
     assert clock.utc - clock.server == pytest.approx(1e9)
-    times = np.array([one.sample.time for one in samples])
-    assert clock.to_server(times) == pytest.approx(np.array([one.time for one in samples]), abs=1e-9)
+    times = np.array([sample.sample.time for sample in samples])
+    assert clock.to_server(times) == pytest.approx(np.array([sample.time for sample in samples]), abs=1e-9)
 
 
 def test_a_recording_without_compared_clocks_says_so(tmp_path):

@@ -31,7 +31,7 @@ AVATAR = '<avatar name="guest" source="external" x="1" y="0.5" heading="0.5"/>'
 
 def desks(first="meet.xml"):
     return tuple(
-        type("SimulatorDesk", (one,), {"first": first}) if one.name == "simulator" else one for one in VR_DESKS
+        type("SimulatorDesk", (item,), {"first": first}) if item.name == "simulator" else item for item in VR_DESKS
     )
 
 
@@ -44,10 +44,10 @@ class Window:
     async def call(self, name, **arguments):
         self.number += 1
         await self.socket.send_str(json.dumps({"id": self.number, "call": name, "args": arguments}))
-        async for one in self.socket:
-            if one.type == aiohttp.WSMsgType.BINARY:
+        async for item in self.socket:
+            if item.type == aiohttp.WSMsgType.BINARY:
                 continue
-            answer = json.loads(one.data)
+            answer = json.loads(item.data)
             if answer.get("id") == self.number:
                 if "error" in answer:
                     raise InputError(answer["error"])
@@ -56,9 +56,9 @@ class Window:
 
     async def until(self, check):
         """Wait until the state of virtual reality passes a check."""
-        while not check(found := await self.call("vr.state")):
+        while not check(result := await self.call("vr.state")):
             await asyncio.sleep(0.05)
-        return found
+        return result
 
 
 async def poses(headset, count=1, start=0, **how):

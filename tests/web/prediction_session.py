@@ -52,4 +52,4 @@ class DeskCaller:
         return self.events("ended")[-1]
 
     def predictor(self, label):
-        return next(one for one in self.desk.greet()["predictors"] if one["label"].startswith(label))
+        return next(item for item in self.desk.greet()["predictors"] if item["label"].startswith(label))

@@ -340,7 +340,7 @@ def test_uploads_are_larger_than_messages_and_have_a_limit(tmp_path):
             return first, answer.status
 
     assert serve(tmp_path, talk) == (200, 413)
-    assert [one.name for one in (tmp_path / "files").iterdir()] == ["large.csv"]
+    assert [item.name for item in (tmp_path / "files").iterdir()] == ["large.csv"]
 
 
 @pytest.mark.live
@@ -371,7 +371,7 @@ def test_the_server_stops_while_a_command_runs(tmp_path, monkeypatch):
 
     try:
         assert serve(tmp_path, talk)
-        assert any(one.name == "crowdbot-counter" for one in threading.enumerate())
+        assert any(item.name == "crowdbot-counter" for item in threading.enumerate())
     finally:
         goes_on.set()
 

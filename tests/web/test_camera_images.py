@@ -31,16 +31,16 @@ TRIAL = """
 </trial>
 """
 COLOR, LABEL, DEPTH, DEPTH_LABEL = (
-    f"eye/{one}" for one in ("color/color", "color/labels", "depth/depth", "depth/labels")
+    f"eye/{item}" for item in ("color/color", "color/labels", "depth/depth", "depth/labels")
 )
 
 
 @pytest.fixture(scope="module")
 def simulation():
-    found = Simulation(parse_trial(TRIAL), 1)
+    result = Simulation(parse_trial(TRIAL), 1)
     for _ in range(8):
-        found.advance()
-    return found
+        result.advance()
+    return result
 
 
 def picture(frame):
@@ -50,7 +50,7 @@ def picture(frame):
 
 
 def test_every_image_of_every_camera_is_described(simulation):
-    found = {one["name"]: one for one in image_descriptions(simulation)}
+    found = {description["name"]: description for description in image_descriptions(simulation)}
     assert list(found) == [COLOR, LABEL, DEPTH, DEPTH_LABEL]
     assert (found[COLOR]["width"], found[COLOR]["height"], found[COLOR]["rate"]) == (160, 120, 10.0)
     assert found[COLOR]["title"] == "eye / color: colour"
@@ -113,7 +113,7 @@ def test_large_images_are_thinned_out_and_other_readings_are_refused(simulation)
 
 def images(desk, name):
     channel = f"cam{[COLOR, LABEL, DEPTH, DEPTH_LABEL].index(name)}"
-    return [one for one in desk.session.frames if one.channel == channel]
+    return [frame for frame in desk.session.frames if frame.channel == channel]
 
 
 def steps(desk, count):
@@ -130,7 +130,7 @@ def test_a_run_sends_each_reading_once_and_only_the_chosen_images(tmp_path):
         ready(desk)
         assert desk.greet()["cameras"] == []
         steps(desk, 4)
-        assert [one for one in desk.session.frames if one.channel.startswith("cam")] == []
+        assert [frame for frame in desk.session.frames if frame.channel.startswith("cam")] == []
         call_command(desk, "cameras", {"names": [DEPTH]})  # a run that waits shows what the robot has
         assert desk.greet()["cameras"] == [DEPTH]
         assert desk.session.latest("simulator.cameras") == [DEPTH]
@@ -165,7 +165,7 @@ def test_recorded_images_are_shown_from_the_records(tmp_path):
         for seconds in (0.5, 1.5):
             desk.seek(seconds)
             wait_until(lambda: images(desk, COLOR) and abs(images(desk, COLOR)[-1].time - seconds) < 1e-6)  # noqa: B023
-            reading = next(one for one in recorded if abs(float(one.time) - seconds) < 1e-6)
+            reading = next(item for item in recorded if abs(float(item.time) - seconds) < 1e-6)
             shown = np.asarray(picture(images(desk, COLOR)[-1])).astype(int)
             assert np.abs(shown - reading.rgb[0]).mean() < 4.0
         assert desk._player._run is None  # nothing was simulated

@@ -43,11 +43,11 @@ def test_lines_are_the_pairs_of_the_metric(seed):
     scene = Scene.of(position, velocity, radius=0.25, active=draw.uniform(size=40) < 0.8)
     args = scene.position, scene.velocity, scene.radius[0], scene.active
     expected = set()
-    for one in np.flatnonzero(scene.active[0]):
-        for other, seconds in enumerate(time_to_collision(*args, one)[0]):
-            near = np.abs(position[other] - position[one]).max() < 8.0
-            if other > one and near and 0.0 < seconds < 3.0:
-                expected.add((*np.round(position[one], 4), *np.round(position[other], 4), round(float(seconds), 4)))
+    for item in np.flatnonzero(scene.active[0]):
+        for other, seconds in enumerate(time_to_collision(*args, item)[0]):
+            near = np.abs(position[other] - position[item]).max() < 8.0
+            if other > item and near and 0.0 < seconds < 3.0:
+                expected.add((*np.round(position[item], 4), *np.round(position[other], 4), round(float(seconds), 4)))
     found = collision_lines(scene).astype(np.float64)
     assert len(found) == len(expected) > 0
     rows = np.array(sorted(expected))

@@ -39,7 +39,7 @@ def test_problems_are_those_of_check_and_stand_at_their_elements(desk):
     wrong = desk.change([{"path": [2], "name": "count", "value": "-3"}], state["revision"])
     with pytest.raises(TrialError) as error:
         parse_trial(wrong["text"])
-    assert [one["message"] for one in wrong["problems"]] == list(error.value.problems)
+    assert [item["message"] for item in wrong["problems"]] == list(error.value.problems)
     assert wrong["problems"][0]["path"] == [2]
     assert "must be at least 0" in wrong["problems"][0]["message"]
     assert desk.undo()["problems"] == []
@@ -66,20 +66,20 @@ def test_an_edit_of_an_older_revision_is_refused(desk):
 def test_a_spawner_becomes_the_people_that_the_run_draws(desk, name):
     state = desk.start(name)
     trial = load_trial(name)
-    while any(one["tag"] == "spawner" for one in state["tree"]["children"]):
-        number = [one["tag"] for one in state["tree"]["children"]].index("spawner")
+    while any(item["tag"] == "spawner" for item in state["tree"]["children"]):
+        number = [item["tag"] for item in state["tree"]["children"]].index("spawner")
         state = desk.expand([number], trial.seed, state["revision"])
     made = parse_trial(state["text"])
-    assert len(made.agents) == sum(one.count for one in trial.spawners)
+    assert len(made.agents) == sum(spawner.count for spawner in trial.spawners)
     if len(trial.spawners) == 1:
         same = expand_spawners(trial, trial.seed)
-        assert [(one.x, one.y) for one in made.agents] == [(one.x, one.y) for one in same.agents]
+        assert [(agent.x, agent.y) for agent in made.agents] == [(agent.x, agent.y) for agent in same.agents]
 
 
 def test_single_people_become_a_spawner(desk):
     state = desk.start("crossing-flows")
     state = desk.expand([2], 1, state["revision"])
-    paths = [[i] for i, one in enumerate(state["tree"]["children"]) if one["tag"] == "agent"]
+    paths = [[i] for i, item in enumerate(state["tree"]["children"]) if item["tag"] == "agent"]
     state = desk.gather(paths, state["revision"])
     spawner = parse_trial(state["text"]).spawners[-1]
     assert (spawner.count, state["problems"]) == (20, [])
@@ -131,8 +131,8 @@ def test_files_are_saved_and_opened_in_the_folder_only(desk, session):
 def test_code_of_a_trial_is_not_run_by_the_check(desk, session):
     (session.workspace.folder / "mine.py").write_text("raise SystemExit('run')\n")
     state = desk.start("frontal")
-    number = [one["tag"] for one in state["tree"]["children"]].index("robot")
-    inner = [one["tag"] for one in state["tree"]["children"][number]["children"]].index("navigator")
+    number = [item["tag"] for item in state["tree"]["children"]].index("robot")
+    inner = [item["tag"] for item in state["tree"]["children"][number]["children"]].index("navigator")
     row = {"path": [number, inner], "name": "type", "value": "mine.py:Mine"}
     state = desk.change([row], state["revision"])
     assert "mine.py" in state["text"]
@@ -149,9 +149,9 @@ def unknown(element, kind, table):
     known = {row["name"] for row in kind["attributes"]}
     if "types" in kind:
         known |= {"type", *(row["name"] for row in kind["types"].get(element.attributes["type"], kind)["attributes"])}
-    yield from ((element.tag, one) for one in element.attributes if one not in known)
-    for one in element.children:
-        yield from unknown(one, table[kind["children"][one.tag]], table)
+    yield from ((element.tag, attribute) for attribute in element.attributes if attribute not in known)
+    for child in element.children:
+        yield from unknown(child, table[kind["children"][child.tag]], table)
 
 
 def test_a_picture_of_a_floor_plan_becomes_the_stage(desk, session):

@@ -206,7 +206,7 @@ def test_a_way_is_drawn_for_people_and_changed_with_the_mouse(editor):
     assert (len(trial.journeys[0].stops), trial.spawners[0].journey, trial.spawners[0].goal) == (3, "way1", ())
 
     page.keyboard.press("Escape")
-    (x1, y1), (x2, y2) = [(one.x, one.y) for one in trial.journeys[0].stops[:2]]
+    (x1, y1), (x2, y2) = [(stop.x, stop.y) for stop in trial.journeys[0].stops[:2]]
     page.mouse.dblclick(*canvas_place(page, (x1 + x2) / 2, (y1 + y2) / 2))
     page.wait_for_function("() => document.querySelector('.editor textarea').value.split('<point').length === 5")
     page.get_by_role("button", name="Undo").click()  # back to three stops
@@ -220,7 +220,7 @@ def test_a_way_is_drawn_for_people_and_changed_with_the_mouse(editor):
     page.wait_for_function("before => document.querySelector('.editor textarea').value !== before", arg=before)
     moved = parse_trial(text_of(page)).journeys[0].stops
     assert moved[0].y == pytest.approx(y1 - 1.0, abs=0.11)
-    assert [(one.x, one.y) for one in moved[1:]] == [(one.x, one.y) for one in trial.journeys[0].stops[1:]]
+    assert [(item.x, item.y) for item in moved[1:]] == [(stop.x, stop.y) for stop in trial.journeys[0].stops[1:]]
 
     page.get_by_role("option", name="spawner").click()
     page.locator(".inspector").get_by_label("journey").select_option("")

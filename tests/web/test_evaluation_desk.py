@@ -52,8 +52,8 @@ def test_the_table_is_that_of_evaluate_and_a_run_can_be_watched(desk, capsys):
     table = desk.table("first")
     plan = EvaluationPlan([load_trial("frontal")], parse_methods("straight, orca"), seeds=range(3))
     same = evaluate(plan)
-    assert [one["navigator"] for one in table["cells"]] == ["straight", "orca"]
-    assert [one["estimates"] for one in table["cells"]] == [
+    assert [item["navigator"] for item in table["cells"]] == ["straight", "orca"]
+    assert [item["estimates"] for item in table["cells"]] == [
         [str(cell.estimate(name)) for name in table["statistics"]] for cell in same.cells
     ]
     assert table["titles"][-2:] == ["time-to-goal [s]", "min-clearance [m]"]
@@ -61,7 +61,7 @@ def test_the_table_is_that_of_evaluate_and_a_run_can_be_watched(desk, capsys):
 
     exec(table["python"], {})
     assert capsys.readouterr().out.splitlines() == [
-        "; ".join([one["trial"], one["navigator"], *one["estimates"]]) for one in table["cells"]
+        "; ".join([item["trial"], item["navigator"], *item["estimates"]]) for item in table["cells"]
     ]
 
     found = desk.watch("first", 1, 2)
@@ -94,7 +94,7 @@ def test_a_result_of_the_command_line_is_opened_and_its_runs_are_watched(desk, r
     assert (name, desk.add("result.json")) == ("result", "result")
     assert desk.greet()["evaluations"] == [{"name": "result", "done": True}]
     table, same = desk.table(name), load_evaluation(result)
-    assert [one["estimates"] for one in table["cells"]] == [
+    assert [item["estimates"] for item in table["cells"]] == [
         [str(cell.estimate(metric)) for metric in table["statistics"]] for cell in same.cells
     ]
     assert table["command"].split()[1:4] == ["evaluate", "frontal", "mine.xml"]
@@ -181,16 +181,16 @@ def printed(words, capsys):
 
 def test_robots_are_described_in_the_words_of_the_command_line(desk, mybot, capsys):
     assert desk.sources()["robots"] == ["mybot", *builtin_robots()]
-    found = desk.robots(["doorway"], "wheelchair, mybot")
+    robots = desk.robots(["doorway"], "wheelchair, mybot")
     lines, text = printed(["doorway", "--robots", "wheelchair, mybot"], capsys)
-    assert found["problem"] == ""
-    assert [f"crowdbot: {one}" for one in found["lines"]] == [one for one in lines if one.startswith("crowdbot: ")]
-    assert [line.split(":")[0] for line in found["lines"][2:]] == [
+    assert robots["problem"] == ""
+    assert [f"crowdbot: {one}" for one in robots["lines"]] == [line for line in lines if line.startswith("crowdbot: ")]
+    assert [line.split(":")[0] for line in robots["lines"][2:]] == [
         "robot 'robot' is wheelchair",
         "robot 'robot' is mybot",
     ]
-    assert "instead of <drive" in found["lines"][1]
-    assert found["remarks"] == []  # the outline of the wheelchair fits the door
+    assert "instead of <drive" in robots["lines"][1]
+    assert robots["remarks"] == []  # the outline of the wheelchair fits the door
     assert "Note on" not in text
 
 
@@ -235,9 +235,9 @@ def test_two_robots_are_two_rows_and_the_run_of_each_is_watched(desk, mybot, mon
     assert main(words) == 0
     monkeypatch.chdir(mybot.parents[1])
     table, result = desk.table("two"), load_evaluation(space.folder / "evaluations/two/result.json")
-    assert [one["robot"] for one in table["cells"]] == ["mybot", "disc of 0.3 m", "qolo"]
-    assert [one["named"] for one in table["cells"]] == ["mybot", "", "qolo"]
-    assert len({one["estimates"][0] for one in table["cells"]}) == 3
+    assert [item["robot"] for item in table["cells"]] == ["mybot", "disc of 0.3 m", "qolo"]
+    assert [item["named"] for item in table["cells"]] == ["mybot", "", "qolo"]
+    assert len({item["estimates"][0] for item in table["cells"]}) == 3
     assert "--robots files/mybot,,qolo" in table["command"]
     assert "['files/mybot', '', 'qolo']" in table["python"]
     for row in (0, 2):

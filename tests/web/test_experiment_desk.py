@@ -36,7 +36,7 @@ def wait_for(desk, *phases):
 def go_through(desk, until=("done",)):
     """Answer every question and watch every trial until a phase."""
     while (state := wait_for(desk, "screen", "pause", *until))["phase"] not in until:
-        named = {one["name"] for one in state["questions"] if one["required"]}
+        named = {item["name"] for item in state["questions"] if item["required"]}
         if named:
             desk.answer({name: value for name, value in ANSWERS.items() if name in named})
         desk.next()
@@ -45,19 +45,19 @@ def go_through(desk, until=("done",)):
 
 def test_a_session_has_the_files_and_order_of_the_console(desk):
     state = desk.open("robot-speed", 2, rate=100.0)
-    assert (state["phase"], [one["name"] for one in state["questions"]]) == ("screen", ["age", "robots"])
+    assert (state["phase"], [item["name"] for item in state["questions"]]) == ("screen", ["age", "robots"])
     state = go_through(desk)
     steps = plan(load_experiment("robot-speed"), 2)
-    assert [one["name"] for one in state["steps"]] == [one.name for one in steps]
+    assert [item["name"] for item in state["steps"]] == [step.name for step in steps]
     folder = desk.session.workspace.folder / state["folder"]
     records = read_log(folder / "session.jsonl")
-    assert sum(one.get("event") == "finish" for one in records) == 3
+    assert sum(record.get("event") == "finish" for record in records) == 3
     assert records[0]["participant"] == 2
     episodes = sorted(folder.glob("*/episode.mcap"))
     assert len(episodes) == 3
     assert replay(episodes[0]).equal
     given = [json.loads(line) for line in (folder / "answers.jsonl").read_text().splitlines()]
-    assert {one["question"]: one["answer"] for one in given} == {"age": 30, "robots": "often"}
+    assert {item["question"]: item["answer"] for item in given} == {"age": 30, "robots": "often"}
     assert [row["opinion.comfort"] for row in desk.answers() if row.get("opinion.comfort")] == [5, 5]
 
 
@@ -71,14 +71,14 @@ def test_a_trial_is_paused_continued_and_repeated(desk):
         if desk.description():
             break
         time.sleep(0.05)
-    assert [one["name"] for one in desk.description()["robots"]] == ["robot"]
+    assert [item["name"] for item in desk.description()["robots"]] == ["robot"]
     assert desk.resource("bodies/2.bin", {}).data
     assert desk.pause()["phase"] == "pause"
     assert desk.resume()["phase"] == "running"
     state = desk.repeat()
     assert state["phase"] in ("trial", "running")
     state = wait_for(desk, "running")
-    names = [one.name for one in (desk.session.workspace.folder / state["folder"]).iterdir() if one.is_dir()]
+    names = [item.name for item in (desk.session.workspace.folder / state["folder"]).iterdir() if item.is_dir()]
     assert sorted(names) == ["001-alone", "001-alone-attempt-2"]
     assert desk.abort("a test")["phase"] == "aborted"
 

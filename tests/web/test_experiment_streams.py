@@ -20,9 +20,9 @@ pytestmark = [pytest.mark.live, pytest.mark.xdist_group("lsl")]
 @pytest.fixture
 def session(tmp_path):
     loop = asyncio.new_event_loop()
-    found = AppSession("main", Workspace(tmp_path / "files"), with_streams((ExperimentDesk,), True, []), loop)
-    yield found
-    found.close()
+    app_session = AppSession("main", Workspace(tmp_path / "files"), with_streams((ExperimentDesk,), True, []), loop)
+    yield app_session
+    app_session.close()
     loop.close()
 
 
@@ -80,12 +80,12 @@ def test_a_session_sends_poses_and_answers_and_records_a_sensor(session, pulse):
     poses = everything(robots)
     assert len(poses) > 3
     assert all(len(row) == 3 for row in poses)
-    told = [json.loads(one[0]) for one in everything(events)]
+    told = [json.loads(item[0]) for item in everything(events)]
     assert {"event": "answered", "question": "age", "value": 30} in told
-    assert {"begin", "finish"} <= {one["event"] for one in told}
+    assert {"begin", "finish"} <= {item["event"] for item in told}
     home = session.workspace.folder / state["folder"]
     desk.abort("a test")
-    assert [one.values[:, 0].tolist() for one in read_streams(home)] == [[60.0, 61.0, 62.0, 63.0, 64.0]]
+    assert [stream.values[:, 0].tolist() for stream in read_streams(home)] == [[60.0, 61.0, 62.0, 63.0, 64.0]]
     assert any("monotonic" in row for row in read_log(home / "session.jsonl"))
     desk.leave()
     for inlet in (events, robots):
@@ -112,5 +112,5 @@ def test_the_command_line_chooses_the_streams(monkeypatch, tmp_path):
     monkeypatch.setattr("crowdbot.cli.app._serve", lambda server, *_: seen.append(server) or asyncio.sleep(0))
     words = ["app", "--no-browser", "--port", "0", "--folder", str(tmp_path), "--lsl", "--lsl-record", "type=EEG"]
     assert main(words) == 0
-    desk = next(one for one in seen[0].desks if issubclass(one, ExperimentDesk))
+    desk = next(desk for desk in seen[0].desks if issubclass(desk, ExperimentDesk))
     assert desk.streams == StreamChoice(send=True, record=("type=EEG",))

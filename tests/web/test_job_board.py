@@ -115,17 +115,17 @@ def test_jobs_wait_for_their_turn_and_are_cancelled(tmp_path):
     session = Windows(tmp_path, SessionLimits(jobs=1, waiting=2))
     for title in ("first", "second", "third"):
         session.jobs.submit(JobWork("count", title, count, (10_000, 0.01)))
-    assert [one.state for one in session.jobs.records] == ["running", "waiting", "waiting"]
+    assert [record.state for record in session.jobs.records] == ["running", "waiting", "waiting"]
     with pytest.raises(InputError, match="2 jobs are waiting, the limit of a session"):
         session.jobs.submit(JobWork("count", "fourth", count, (1,)))
     session.jobs.cancel(2)
-    assert [one.state for one in session.jobs.records] == ["running", "cancelled", "waiting"]
+    assert [record.state for record in session.jobs.records] == ["running", "cancelled", "waiting"]
     session.jobs.cancel(1)
-    assert [one.state for one in session.jobs.records] == ["cancelled", "cancelled", "running"]
+    assert [record.state for record in session.jobs.records] == ["cancelled", "cancelled", "running"]
     with pytest.raises(InputError, match="job 3 is running; cancel it first"):
         session.jobs.remove(3)
     session.jobs.close()
-    assert [one.state for one in Windows(tmp_path).jobs.records] == ["cancelled", "cancelled", "interrupted"]
+    assert [record.state for record in Windows(tmp_path).jobs.records] == ["cancelled", "cancelled", "interrupted"]
 
 
 @pytest.mark.live
@@ -181,7 +181,7 @@ class TestDesk:
         number = call("begin", kind="generate", values=values)
         assert wait(session.jobs, 300).problem == ""
         same = generate(GenerationPlan([load_trial(str(path))], range(2), ["sick-tim571"]), tmp_path / "same")
-        names = [one["name"] for one in call("files", number=number)]
+        names = [item["name"] for item in call("files", number=number)]
         assert "README.md" in names
         for name in same.files:
             data = call.desk.resource(f"{number}/files/{name}", {}).data

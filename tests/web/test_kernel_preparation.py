@@ -54,7 +54,7 @@ def test_a_process_that_fails_is_not_repeated(cold, monkeypatch):
     _, started = cold
     monkeypatch.setattr(kernel_preparation, "PROGRAM", "raise SystemExit(3)")
     prepare_kernels(lambda: False, lambda: None)
-    assert [one.returncode for one in started] == [3]
+    assert [item.returncode for item in started] == [3]
 
 
 def test_closing_ends_the_process_and_the_wait_for_another(cold, monkeypatch):

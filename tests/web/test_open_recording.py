@@ -25,7 +25,7 @@ def recording(tmp_path):
 
 def caller(folder, file):
     found = opened_first(DESKS, str(file))
-    own = next(one for one in found.desks if one.name == "prediction")
+    own = next(desk for desk in found.desks if desk.name == "prediction")
     return DeskCaller(folder, own, found.readable)
 
 
@@ -35,7 +35,7 @@ def test_a_new_session_has_the_recording_and_keeps_its_predictors(tmp_path, reco
     assert desk("restore")["recording"]["path"] == str(recording)
     desk("add", settings={"predictor": "constant-velocity"})
     again = caller(tmp_path / "files", recording)
-    assert [one["name"] for one in again("restore")["predictors"]] == ["constant-velocity"]
+    assert [item["name"] for item in again("restore")["predictors"]] == ["constant-velocity"]
     other = recording.with_name("other.txt")
     other.write_text(ROWS)
     assert caller(tmp_path / "files", other)("restore")["predictors"] == []

@@ -52,13 +52,13 @@ def test_the_lists_are_those_of_the_command_line(desk, capsys):
         capsys.readouterr()
         main(["list", kind, "--json"])
         known = json.loads(capsys.readouterr().out)[kind]
-        missing = set(known) - {one["name"] for one in tables[kind]}
+        missing = set(known) - {item["name"] for item in tables[kind]}
         assert missing <= {"simulated", "mixture", "weighted-sum"}, kind
-        assert all(one["about"].startswith(known[one["name"]]) for one in tables[kind])
+        assert all(item["about"].startswith(known[item["name"]]) for item in tables[kind])
     assert all(
         row["kind"] in ("number", "whole", "switch", "choice", "text")
-        for one in tables["models"]
-        for row in one["parameters"]
+        for item in tables["models"]
+        for row in item["parameters"]
     )
 
 
@@ -80,7 +80,7 @@ def test_a_run_gives_the_numbers_of_the_copied_command_and_python(desk, capsys):
     assert desk.run(seed=3) == {"problem": "", "cancelled": False}
     assert [row["note"] for row in desk("results")["table"]["rows"]] == ["", "best of 4 per person", ""]
     lines = desk("command_line").splitlines()
-    scores = [one["results"]["clean"]["score"] for one in desk.desk.greet()["predictors"]]
+    scores = [item["results"]["clean"]["score"] for item in desk.desk.greet()["predictors"]]
     for line, own in zip(lines, scores, strict=True):
         (found,) = command_json(capsys, line)["results"]
         total = found["total"]
@@ -90,7 +90,7 @@ def test_a_run_gives_the_numbers_of_the_copied_command_and_python(desk, capsys):
     text = desk("python").replace("print(result.score)", "found.append(result.score)")
     space = {"found": []}
     exec(compile(text, "copied.py", "exec"), space)
-    assert [one.ade for one in space["found"]] == [one["ade"] for one in scores]
+    assert [one.ade for one in space["found"]] == [score["ade"] for score in scores]
 
 
 @pytest.mark.live
@@ -162,12 +162,12 @@ def test_a_person_has_errors_and_the_fit_of_the_frame(desk):
     id = int(future.id[index][future.scored[index]][0])
     found = desk("person", index=index, id=id)
     (row,) = found["results"]
-    fit = {one["name"]: one for one in row["parameters"]}
+    fit = {item["name"]: item for item in row["parameters"]}
     assert found["scored"]
     assert (fit["time_horizon"]["given"], fit["radius"]["unit"]) == (3.0, "m")
     series = desk("series", variable="ade", person=id)["rows"][0]["values"]
     assert series[index] == row["ade"]
-    assert np.mean([one for one in series if one is not None]) == pytest.approx(row["mean_ade"])
+    assert np.mean([item for item in series if item is not None]) == pytest.approx(row["mean_ade"])
     assert (
         desk("series", variable="time_horizon", person=id)["rows"][0]["values"][index] == fit["time_horizon"]["value"]
     )
@@ -301,8 +301,8 @@ def test_a_predictor_that_fails_says_why_and_the_others_go_on(desk):
     desk("add", settings={**ORCA, "goal": "learned-destinations"})
     desk("add", settings={"predictor": "kalman"})
     desk.run()
-    states = [one["results"]["clean"] for one in desk.desk.greet()["predictors"]]
-    assert [one["state"] for one in states] == ["failed", "done"]
+    states = [item["results"]["clean"] for item in desk.desk.greet()["predictors"]]
+    assert [state["state"] for state in states] == ["failed", "done"]
     assert "no learning part" in states[0]["problem"]
 
 
@@ -439,7 +439,7 @@ def test_a_server_that_is_started_again_has_the_recording_and_the_predictors(des
     again("restore")
     before, after = desk.desk.greet(), again.desk.greet()
     assert after["recording"]["path"] == before["recording"]["path"]
-    assert [one["name"] for one in after["predictors"]] == [one["name"] for one in before["predictors"]]
+    assert [item["name"] for item in after["predictors"]] == [item["name"] for item in before["predictors"]]
     assert not after["stored"]
 
 
@@ -461,7 +461,7 @@ def test_a_server_that_is_started_again_has_the_results(desk):
     assert {name: again(name) for name in asked} == before
     assert (again("person", index=2, id=who), again("series", variable="ade")) == (person, series)
     assert again.desk.resource("window", {"index": "2", "input": "degraded"}).data == frame
-    facts = [one.desk.greet() for one in (desk, again)]
+    facts = [item.desk.greet() for item in (desk, again)]
     assert facts[0]["predictors"] == facts[1]["predictors"]
     assert facts[1]["predictors"][0]["results"]["degraded"]["score"]["ade"] > 0.0
     assert facts[0]["recording"] == facts[1]["recording"]

@@ -107,10 +107,10 @@ def test_people_walk_between_records(opened):
     scene, _ = opened
     scene.at(1.0)
     frames = [instant_frame(scene.at(1.0 + 0.02 * k)).arrays for k in range(11)]
-    ways = np.diff([one["place"][:, 0] for one in frames], axis=0)
+    ways = np.diff([frame["place"][:, 0] for frame in frames], axis=0)
     assert (ways < 0.0).all()  # in each of the steps, although only every fifth instant is recorded
     assert max(np.abs(np.diff(ways, axis=0)).max(axis=0)) < 0.01
-    bones = np.abs(np.diff([one["bones"].astype(int) for one in frames], axis=0)).max(axis=(1, 2))
+    bones = np.abs(np.diff([frame["bones"].astype(int) for frame in frames], axis=0)).max(axis=(1, 2))
     assert (bones > 0).all()
 
 
@@ -232,7 +232,7 @@ def test_the_inspector_tells_the_balance(pushed):
 
 def test_falls_and_pushes_are_events(pushed):
     events = episode_events(read_episode(pushed))
-    assert [one.kind for one in events] == ["push", "fall"]
+    assert [event.kind for event in events] == ["push", "fall"]
     assert events[0] == (0.2, "push", "person 0 is pushed with 900 N for 0.25 s")
     assert events[1].about == "person 0 falls forward"
     assert 0.25 < events[1].time < 1.0

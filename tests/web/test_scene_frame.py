@@ -118,7 +118,7 @@ def test_links_of_robots_have_the_poses_of_the_simulation(hall):
             base = np.eye(4)
             cos, sin = np.cos(pose.heading[0]), np.sin(pose.heading[0])
             base[:2, :2], base[:3, 3] = [[cos, -sin], [sin, cos]], (*pose.position[0], robot.lift)
-            frames = {name: base @ one for name, one in robot.model.poses(robot.posture).items()}
+            frames = {name: base @ pose for name, pose in robot.model.poses(robot.posture).items()}
         else:
             frames = body.frames()
         for name in names:
@@ -143,7 +143,7 @@ def test_doors_and_props_move(hall):
 def test_layers_are_there_only_when_asked_for(hall):
     plain, every = sent(hall).arrays, sent(hall, *LAYERS).arrays
     assert not any(name.startswith(("scan", "pose", "cloud", "cones", "forces", "goals")) for name in plain)
-    number = next(k for k, one in enumerate(scene_description(hall)["sensors"]) if one["kind"] == "scan")
+    number = next(k for k, item in enumerate(scene_description(hall)["sensors"]) if item["kind"] == "scan")
     sensors = [sensor for control in hall.robots for sensor in control.sensors]
     ranges = sensors[number].reading(0).ranges[0]
     seen = np.isfinite(ranges)
@@ -172,16 +172,16 @@ def test_beams_end_where_the_reading_has_its_points(hall):
 
 
 def test_description_is_json_of_everything_that_stands_still(hall):
-    found = json.loads(json.dumps(scene_description(hall), allow_nan=False))
-    assert [one["kind"] for one in found["stage"]["props"]] == ["cube", "table", "tree"]
-    assert [wall["inner"] for wall in found["stage"]["walls"]].count(True) == 1
-    assert found["stage"]["doors"][0]["width"] == pytest.approx(2.0)
-    assert {zone["kind"] for zone in found["zones"]} == {"start", "goal"}
-    people = found["people"]
+    loads = json.loads(json.dumps(scene_description(hall), allow_nan=False))
+    assert [one["kind"] for one in loads["stage"]["props"]] == ["cube", "table", "tree"]
+    assert [wall["inner"] for wall in loads["stage"]["walls"]].count(True) == 1
+    assert loads["stage"]["doors"][0]["width"] == pytest.approx(2.0)
+    assert {zone["kind"] for zone in loads["zones"]} == {"start", "goal"}
+    people = loads["people"]
     assert len(people["body"]) == len(people["colors"]) == 7
     assert people["rider"].count(True) == 1
-    assert all(len(one) == 6 * len(found["regions"]) for one in people["colors"])
-    low_x, low_y, high_x, high_y = found["bounds"]
+    assert all(len(item) == 6 * len(loads["regions"]) for item in people["colors"])
+    low_x, low_y, high_x, high_y = loads["bounds"]
     assert low_x <= -6 < 6 <= high_x
     assert low_y <= -4 < 4 <= high_y
 

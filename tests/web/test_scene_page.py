@@ -95,11 +95,11 @@ def test_a_scene_is_drawn(window, flat):
         assert sum(info["levels"]) == 1
         assert info["triangles"] > 1500
         assert 5 < info["calls"] < 60
-    names = [one["name"] for one in window.evaluate("scene.layers()")]
+    names = [item["name"] for item in window.evaluate("scene.layers()")]
     assert {"people", "robots", "walls", "zones", "scans", "forces"} <= set(names)
     assert window.evaluate("scene.wanted()") == ["scans"]
     beside, eyes = ([], []) if flat else (["beside"], ["eyes"])
-    cameras = [one["name"] for one in window.evaluate("scene.cameras()")]
+    cameras = [item["name"] for item in window.evaluate("scene.cameras()")]
     assert cameras == ["free", "overview", *beside, "follow", *eyes, "robot:robot"]
 
 
@@ -213,7 +213,7 @@ def test_the_player_plays_an_episode_without_a_server(browser, tmp_path, capsys)
     page.wait_for_function("() => crowdbotPlayer.player.time > 1.2")
     page.evaluate("crowdbotPlayer.player.play(false)")
     events = episode_events(recorded)
-    assert [one.kind for one in events] == ["stall"]  # the robot is slower than 0.05 m/s
+    assert [event.kind for event in events] == ["stall"]  # the robot is slower than 0.05 m/s
     page.get_by_label("Event", exact=True).select_option(str(events[0].time).removesuffix(".0"))
     page.wait_for_function(f"() => Math.abs(crowdbotPlayer.player.time - {events[0].time}) < 1e-9")
     page.get_by_role("button", name="From above").click()

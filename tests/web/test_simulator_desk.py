@@ -43,12 +43,12 @@ def test_everything_a_user_does_is_an_order_and_replays(tmp_path):
     with simulator(tmp_path) as desk:
         opened(desk, seed=1)
         desk.step(5)
-        robot = next(one for one in desk.people() if one["kind"] == "robot")
+        robot = next(person for person in desk.people() if person["kind"] == "robot")
         before = len(desk.people())
         desk.order({"order": "add-person", "x": 0.0, "y": 6.0, "goal_x": 0.0, "goal_y": -6.0})
         people = desk.people()
         assert len(people) == before + 1
-        new = max(one["id"] for one in people)
+        new = max(person["id"] for person in people)
         desk.order({"order": "redirect", "person": new, "x": 5.0, "y": 5.0})
         assert desk.inspect(new)["goal"] == [5.0, 5.0]
         desk.order({"order": "move", "person": new, "x": 1.0, "y": 6.5})
@@ -59,7 +59,7 @@ def test_everything_a_user_does_is_an_order_and_replays(tmp_path):
         assert desk.inspect(robot["id"])["goal"] == [3.0, 1.0]
         desk.set_value("crowd/time-horizon", "3")
         name = desk.add_robot("turtlebot2", -5.0, 5.0, 5.0, 5.0)
-        assert name in {one["name"] for one in desk.people()}
+        assert name in {person["name"] for person in desk.people()}
         desk.take_over("robot")
         desk.drive("robot", 0.3, 0.5)
         desk.step(20)
@@ -81,7 +81,7 @@ def test_a_driven_robot_moves_as_it_is_told_and_stops_when_let_go(tmp_path):
         opened(desk, paused=False)
         desk.take_over("robot")
         desk.drive("robot", 0.4, 0.0)
-        robot = next(one["id"] for one in desk.people() if one["kind"] == "robot")
+        robot = next(person["id"] for person in desk.people() if person["kind"] == "robot")
         wait_until(lambda: "0.40 m/s" in str(desk.inspect(robot)["rows"]))
         wait_until(lambda: "command', '0.00 m/s" in str(desk.inspect(robot)["rows"]))  # nobody repeats it
         with pytest.raises(InputError, match="there is no robot 'robo', did you mean 'robot'"):
@@ -97,7 +97,7 @@ def test_a_person_walks_is_recorded_and_stops_at_walls(tmp_path):
         opened(desk, "frontal", paused=False)
         name = desk.become_person(0.0, 0.5)
         ready(desk)
-        start = next(one for one in desk.people() if one["name"] == name)
+        start = next(person for person in desk.people() if person["name"] == name)
         desk.speed(None)
         for _ in range(200):
             if desk._status()["state"] == "ended":
@@ -153,7 +153,7 @@ def test_errors_of_a_trial_are_those_of_check(tmp_path):
         with pytest.raises(TrialError) as checked:
             load_trial(tmp_path / "bad.xml")
         assert shown.value.problems == checked.value.problems
-        assert next(one["name"] for one in desk.trials()) == "bad.xml"
+        assert next(trial["name"] for trial in desk.trials()) == "bad.xml"
         with pytest.raises(InputError, match="outside the folder of the app"):
             desk.open("../bad.xml")
         with pytest.raises(InputError, match="nothing is open"):
@@ -242,7 +242,7 @@ def test_open_names_a_file_or_a_builtin_trial(tmp_path):
     (tmp_path / "two.csv").write_text("0 1 0.0 0.0\n10 1 0.5 0.0\n")
     found = opened_first(DESKS, str(tmp_path / "two.csv"))
     assert found.tab == "prediction"
-    assert [one.first for one in found.desks if one.name == "prediction"] == [str(tmp_path / "two.csv")]
+    assert [desk.first for desk in found.desks if desk.name == "prediction"] == [str(tmp_path / "two.csv")]
     (tmp_path / "words.txt").write_text("no tracks")
     with pytest.raises(InputError, match=r"words\.txt: neither a trial .* nor a recording of people"):
         opened_first(DESKS, str(tmp_path / "words.txt"))

@@ -132,7 +132,7 @@ def test_a_robot_is_driven_by_keys_and_the_joystick(page, files):
     open_trial(page, "static-crowd")
     page.get_by_label("Choose a person or robot").focus()
     people = page.evaluate("crowdbot.connection.call('simulator.people')")
-    robot = next(f"robot {one['id']}" for one in people if one["kind"] == "robot")
+    robot = next(f"robot {person['id']}" for person in people if person["kind"] == "robot")
     wait(page, f"[...document.querySelectorAll('option')].some((one) => one.value === '{robot}')")
     page.get_by_label("Choose a person or robot").select_option(robot)
     page.get_by_role("button", name="Drive").click()

@@ -26,8 +26,10 @@ EXPERIMENT = """<experiment name="visit"><instructions name="consent" text="You 
 
 def symptoms():
     """Return the questions on simulator sickness of the built-in experiment, after the trial."""
-    screen = next(one for one in load_experiment("leader-follower").endings if one.name == "sickness_after")
-    rows = "".join(f'<scale name="{one.name}" text="{one.text}" low="0" high="3"/>' for one in screen.questions)
+    screen = next(ending for ending in load_experiment("leader-follower").endings if ending.name == "sickness_after")
+    rows = "".join(
+        f'<scale name="{question.name}" text="{question.text}" low="0" high="3"/>' for question in screen.questions
+    )
     return f'<ending name="sickness" text="How strongly do you feel each of these now?">{rows}</ending>'
 
 
@@ -86,12 +88,12 @@ def test_a_participant_answers_and_moves_from_consent_to_the_end(headset, app, b
 
     folder = app.folder / "experiments" / "visit" / "participant-001"
     given = [json.loads(line) for line in (folder / "answers.jsonl").read_text().splitlines()]
-    answers = {one["question"]: one["answer"] for one in given}
+    answers = {item["question"]: item["answer"] for item in given}
     assert (answers["agree"], answers["age"]) == ("yes", 31)
     assert sickness_scores(answers)["total"] == 78.54
     records = read_log(folder / "session.jsonl")
-    assert [one["value"] for one in records if one.get("question") == "comfort"] == [4]
-    assert sum(one.get("event") == "answered" for one in records) == 3 + len(SYMPTOMS)
+    assert [record["value"] for record in records if record.get("question") == "comfort"] == [4]
+    assert sum(record.get("event") == "answered" for record in records) == 3 + len(SYMPTOMS)
     episode = folder / "001-meet" / "episode.mcap"
     assert {order.avatar for _, order in read_episode(episode).orders} == {"guest"}
     assert replay(episode).equal

@@ -33,15 +33,16 @@ def test_the_gaze_reaches_the_episode_and_a_headset_without_eye_tracking_sends_n
         enter(plain, app)
         wait(plain, f"{STATE}?.hands.length === 2 && {STATE}.steps > 2")
         assert plain.evaluate(f"{STATE}.gaze") is False
-    looks = [one.gaze for _, one in read_episode(app.folder / "eyes.mcap").orders if one.gaze]
+    looks = [item.gaze for _, item in read_episode(app.folder / "eyes.mcap").orders if item.gaze]
     assert len(looks) > 3
     assert math.dist(looks[-1], (math.cos(0.3), math.sin(0.3), 0.0)) < 1e-5
     assert replay(app.folder / "eyes.mcap").equal
     records = list(read_headset_recording(app.folder / "eyes-guest.headset"))
-    assert sum(one.sample is not None and one.sample.gaze is not None for one in records) > 5
+    assert sum(record.sample is not None and record.sample.gaze is not None for record in records) > 5
     clock = read_headset_clock(app.folder / "eyes-guest.headset")
-    samples = [one for one in records if one.sample is not None]
+    samples = [record for record in records if record.sample is not None]
     behind = [
-        one.time - time for one, time in zip(samples, clock.to_server([s.sample.time for s in samples]), strict=True)
+        sample.time - time
+        for sample, time in zip(samples, clock.to_server([s.sample.time for s in samples]), strict=True)
     ]
     assert min(behind) > -0.5 * clock.round_trip.max() - 1e-4  # no message arrives before it was sent

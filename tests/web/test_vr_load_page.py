@@ -25,10 +25,10 @@ MOST_CALLS = 60
 
 @pytest.fixture
 def folder(tmp_path):
-    found = tmp_path / "files"
-    found.mkdir()
-    (found / "full.xml").write_text(TRIAL)
-    return found
+    result = tmp_path / "files"
+    result.mkdir()
+    (result / "full.xml").write_text(TRIAL)
+    return result
 
 
 def test_fifty_people_a_robot_and_a_mirror(browser, modules, serve, folder):

@@ -55,8 +55,8 @@ def settle(page, check):
 
 def gaps_of_beams(simulation):
     """Return the distances [m] of the ends of beams near the avatar from its skin."""
-    reading = next(one for _, mount, one in simulation.new_readings() if mount.name == "limbs")
-    sensor = next(one.sensor for one in simulation.trial.robots[0].sensors if one.name == "limbs")
+    reading = next(item for _, mount, item in simulation.new_readings() if mount.name == "limbs")
+    sensor = next(sensor.sensor for sensor in simulation.trial.robots[0].sensors if sensor.name == "limbs")
     scene = simulation.world.environment_scene(0)
     angles, ranges = sensor.angles + scene.heading[0, 2], reading.ranges[0]
     ends = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.full(len(angles), 1.2)], 1)
@@ -72,11 +72,11 @@ def gaps_of_beams(simulation):
 def follow_errors(recording, orders):
     """Return how far the head of each order is from where it was before the measured age [m], and the ages [s]."""
     records, clock = list(read_headset_recording(recording)), read_headset_clock(recording)
-    samples = [one.sample for one in records if one.sample is not None and one.sample.head is not None]
-    times = clock.to_server([one.time for one in samples])
+    samples = [record.sample for record in records if record.sample is not None and record.sample.head is not None]
+    times = clock.to_server([sample.time for sample in samples])
     place = RigidTransform.at(1.0, 0.5, 0.5)
-    heads = place.apply(np.array([one.head[:3] for one in samples]))
-    steps = {round(one.note["step"], 6): one for one in records if one.note and "step" in one.note}
+    heads = place.apply(np.array([sample.head[:3] for sample in samples]))
+    steps = {round(record.note["step"], 6): record for record in records if record.note and "step" in record.note}
     errors, ages = [], []
     for order in orders:
         step = steps[round(order.time, 6)]
@@ -145,10 +145,10 @@ def test_a_person_enters_walks_reaches_and_meets_limits(headset, app):
     orders = [order for _, order in read_episode(episode).orders]
     assert len(orders) > 10
     records = list(read_headset_recording(app.folder / "visit-guest.headset"))
-    steps = [one.note for one in records if one.note and "step" in one.note]
+    steps = [record.note for record in records if record.note and "step" in record.note]
     assert len(steps) >= len(orders)
     assert steps[0]["pose"][:2] == pytest.approx([orders[0].x, orders[0].y])
-    assert sum(one.sample is not None for one in records) > 20
+    assert sum(record.sample is not None for record in records) > 20
     errors, ages = follow_errors(app.folder / "visit-guest.headset", orders)
     late, off = 1e3 * np.median(ages), 1e3 * np.median(errors)
     print(f"the avatar is where the head was before {late:.0f} ms: median error {off:.1f} mm")

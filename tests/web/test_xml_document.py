@@ -23,13 +23,13 @@ TEXT = """<?xml version="1.0"?>
 
 
 def plain(element):
-    return (element.tag, element.attributes, [plain(one) for one in element.children])
+    return (element.tag, element.attributes, [plain(child) for child in element.children])
 
 
 def test_the_elements_are_those_of_the_parser():
     document = XmlDocument(TEXT)
     assert plain(document.root) == plain(parse_xml(TEXT.encode(), "t"))
-    assert [one.line for one in document.root.each()] == [3, 4, 5, 7, 10]
+    assert [item.line for item in document.root.each()] == [3, 4, 5, 7, 10]
 
 
 @pytest.mark.parametrize("name", sample(builtin_trials(), 5))
@@ -121,8 +121,8 @@ def test_a_thousand_random_edits_undone_give_the_same_text():
 
 def walk(node, path=()):
     yield path, node
-    for i, one in enumerate(node.children):
-        yield from walk(one, (*path, i))
+    for i, child in enumerate(node.children):
+        yield from walk(child, (*path, i))
 
 
 def test_an_edit_after_undo_drops_what_was_undone():

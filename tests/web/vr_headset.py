@@ -40,7 +40,7 @@ PRESS = """([hand, value]) => {
 def desks(first):
     """Return the tabs of the app with virtual reality that open a trial first."""
     return tuple(
-        type("SimulatorDesk", (one,), {"first": first}) if one.name == "simulator" else one for one in VR_DESKS
+        type("SimulatorDesk", (item,), {"first": first}) if item.name == "simulator" else item for item in VR_DESKS
     )
 
 
@@ -64,7 +64,7 @@ def emulated_headsets(browser, app, modules):
     yield open_page
     for context in contexts:
         context.close()
-    assert [one for one in faults if not any(word in one for word in CUT)] == []
+    assert [fault for fault in faults if not any(word in fault for word in CUT)] == []
 
 
 def wait(page, expression, seconds=300.0):

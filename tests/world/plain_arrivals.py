@@ -161,9 +161,9 @@ class PlainArrivals:
     def join(self, others: Sequence[PlainArrivals]) -> PlainArrivals:
         """Return the queues of this and other worlds with the same sources."""
         whole = copy.copy(self)
-        whole._queues = [queues for one in (self, *others) for queues in one._queues]
-        whole._arrival = np.concatenate([one._arrival for one in (self, *others)])
-        whole._waiting = np.concatenate([one._waiting for one in (self, *others)])
+        whole._queues = [queues for item in (self, *others) for queues in item._queues]
+        whole._arrival = np.concatenate([item._arrival for item in (self, *others)])
+        whole._waiting = np.concatenate([item._waiting for item in (self, *others)])
         return whole
 
     def put(self, environments: Sequence[int], other: PlainArrivals) -> None:

@@ -75,8 +75,8 @@ def test_the_same_people_enter(
         check_step(pair, scenes, 0.1 * k, ids)
         if k in (20, 35, 36):
             new = [*sources[:-1], changed if k == 20 else dataclasses.replace(sources[-1], rate=3.0)]
-            for one in pair:
-                one.reconfigure(new, [seed // 2 for seed in seeds] if restart and k == 35 else None)
+            for item in pair:
+                item.reconfigure(new, [seed // 2 for seed in seeds] if restart and k == 35 else None)
         if k == 45:
             fresh = both(new, [5])
             chosen = np.array([count - 1, *range(count)][:count])

@@ -187,7 +187,7 @@ def test_a_push_goes_through_a_row_of_people() -> None:
     world = struck("man-36", 0.0, 3.0, row=3)
     moved = world.scene.position[0, 1:, 0] - (0.9 + 0.45 * np.arange(3))
     assert np.all(moved > 0.05)
-    pairs = {(one.first.kind, one.second.kind) for one in world.contact_events}
+    pairs = {(contact_event.first.kind, contact_event.second.kind) for contact_event in world.contact_events}
     assert ("person", "person") in pairs
 
 
@@ -233,7 +233,7 @@ TRIAL = """<trial name="shove" duration="4" world="{world}" balance="true" step=
 def test_falls_are_part_of_an_episode_and_of_the_metrics_of_its_robot() -> None:
     episode = simulate(parse_trial(TRIAL.format(world="physics")), 0)
     assert episode.metrics["falls"] == len(episode.falls)
-    assert episode.metrics["robot_caused_falls"] == sum(one.cause == "robot" for one in episode.falls)
+    assert episode.metrics["robot_caused_falls"] == sum(fall.cause == "robot" for fall in episode.falls)
     assert episode.metrics["max_severity"] >= episode.metrics["fall_severity"]
     assert simulate(parse_trial(TRIAL.format(world="physics")), 0).digest == episode.digest
 

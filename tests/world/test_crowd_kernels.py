@@ -163,8 +163,8 @@ def test_paths_have_the_length_of_their_legs() -> None:
     goal = np.array([4.0, 0.0]) + np.zeros_like(place)
     ways = router.follow(place, goal)
     alone = [router.follow(place[e : e + 1], goal[e : e + 1]) for e in range(40)]
-    assert np.array_equal(ways.length, np.concatenate([one.length for one in alone]))
-    assert np.array_equal(ways.subgoal, np.concatenate([one.subgoal for one in alone]))
+    assert np.array_equal(ways.length, np.concatenate([item.length for item in alone]))
+    assert np.array_equal(ways.subgoal, np.concatenate([item.subgoal for item in alone]))
     straight = np.all(ways.subgoal == goal, axis=-1)
     away = np.hypot(*np.moveaxis(goal - place, -1, 0))
     assert np.array_equal(ways.length[straight], away[straight])
@@ -178,9 +178,9 @@ def test_close_bodies_are_the_nearest_neighbors(agents: int, reach: float) -> No
     place[:, ::7] = np.nan
     reaches = rng.uniform(0.5 * reach, reach, (12, agents))
     seen, asking = rng.random((12, agents)) < 0.8, rng.random((12, agents)) < 0.8
-    found = find_close_bodies(place, reaches, 24, seen, asking)
+    close_bodies = find_close_bodies(place, reaches, 24, seen, asking)
     right = nearest(place, reaches, 24, seen, asking)
-    assert np.array_equal(found.number, right.number)
+    assert np.array_equal(close_bodies.number, right.number)
     for e, a in np.ndindex(12, agents):
         count = int(right.number[e, a])
-        assert np.array_equal(found.agent[e, a, :count], right.agent[e, a, :count])
+        assert np.array_equal(close_bodies.agent[e, a, :count], right.agent[e, a, :count])

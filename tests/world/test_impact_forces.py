@@ -48,7 +48,7 @@ def hit(kind, speed, mirrored=True, heading=0.0, step=0.005, walking=0.0, after=
             end = time + after
         if time >= end:
             break
-    event = max(world.contact_events, key=lambda one: one.peak_force)
+    event = max(world.contact_events, key=lambda contact_event: contact_event.peak_force)
     return event, world.robot_bodies[1].mass, float(world.people.people.mass[0])
 
 
@@ -94,8 +94,8 @@ def test_two_led_bodies_do_not_press_without_limit():
 def standing():
     people = People.of(["man-36"])
     gait = Gait(people, 0)
-    found = people.limbs(gait.posture(gait.start(np.zeros((1, 2)), np.zeros(1))))
-    return found.start[0], found.end[0], people.limb_mass[0]
+    limbs = people.limbs(gait.posture(gait.start(np.zeros((1, 2)), np.zeros(1))))
+    return limbs.start[0], limbs.end[0], people.limb_mass[0]
 
 
 def test_the_mass_of_a_striking_limb():
@@ -104,7 +104,7 @@ def test_the_mass_of_a_striking_limb():
     ahead, turned = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
     for limb in ("foot_l", "shank_l", "thigh_l", "hand_r", "forearm_r", "upperarm_r"):
         shares = [striking_mass(start, end, mass, limb, share, ahead) for share in (0.0, 0.5, 1.0)]
-        assert all(0.0 < one < whole for one in shares)
+        assert all(0.0 < share < whole for share in shares)
         assert striking_mass(start, end, 2.0 * mass, limb, 0.5, ahead) == pytest.approx(2.0 * shares[1], rel=1e-3)
         spun = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         found = striking_mass(start @ spun.T, end @ spun.T, mass, limb, 0.5, turned)

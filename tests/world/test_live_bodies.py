@@ -136,7 +136,7 @@ def test_a_new_robot_pushes_people_and_is_seen() -> None:
     pushed = 0.0
     for _ in range(60):
         world.step({agent: Twist(1.0)})
-        pushed = max(pushed, sum(one.force for one in world.forces))
+        pushed = max(pushed, sum(force.force for force in world.forces))
     assert pushed > 10.0
     assert world.scene.position[0, 0, 0] > 0.1
     assert agent in set(world.bodies().box_owner.tolist()) | set(world.bodies().owner.tolist())
@@ -217,7 +217,7 @@ def test_a_person_beyond_the_bodies_gets_one() -> None:
         world.step({0: Twist(0.2)})
     assert world.skipped_people == 0
     assert np.count_nonzero(world._people_bodies.agent >= 0) >= 2
-    assert any(one.second.kind == "person" for one in world.contact_events)
+    assert any(contact_event.second.kind == "person" for contact_event in world.contact_events)
     assert world.limbs().radius.shape == (1, 7 * 17)
     assert world.body_scene().bodies is not None
 
@@ -303,8 +303,8 @@ def test_changed_models_are_used_one_at_a_time() -> None:
         for world in turns:
             drive(world, 1)
     alone = [hall(0, 6), hall(1, 6)]
-    for one, two in zip(turns, alone, strict=True):
-        assert_kept(state(one), state(two))
+    for turn, two in zip(turns, alone, strict=True):
+        assert_kept(state(turn), state(two))
 
 
 def test_wrong_changes_are_explained_and_change_nothing() -> None:

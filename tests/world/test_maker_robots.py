@@ -85,9 +85,9 @@ def test_a_mesh_around_an_axle_rolls_as_an_ellipsoid(tmp_path: Path) -> None:
     with maker_robot(write_maker(tmp_path, "mesh_wheels")) as (robot, _):
         radii = {wheel.joint: wheel.radius for wheel in robot.wheels}
         geoms = _colliders(mjcf(robot.model, wheels=radii).root, "left_link")
-        assert [one.attributes["type"] for one in geoms] == ["ellipsoid"]
+        assert [geom.attributes["type"] for geom in geoms] == ["ellipsoid"]
         assert [float(value) for value in geoms[0].attributes["size"].split()] == pytest.approx([0.06, 0.06, 0.015])
-        assert {one.attributes["type"] for one in _colliders(mjcf(robot.model).root, "left_link")} == {"mesh"}
+        assert {collider.attributes["type"] for collider in _colliders(mjcf(robot.model).root, "left_link")} == {"mesh"}
 
 
 def _colliders(root: Element, link: str) -> list[Element]:
@@ -122,4 +122,6 @@ def test_six_wheels_have_three_axles(tmp_path: Path) -> None:
 
 def test_a_ball_joint_is_fixed_and_told(tmp_path: Path) -> None:
     made = import_robot(write_maker(tmp_path, "sdf_diff"), "r")
-    assert any("'caster_joint' is a ball joint, which is not supported; it is fixed" in one for one in made.remarks)
+    assert any(
+        "'caster_joint' is a ball joint, which is not supported; it is fixed" in remark for remark in made.remarks
+    )

@@ -66,9 +66,9 @@ class Watched:
         self._last = now
 
     def _record(self, time, contacts) -> None:
-        for one in contacts:
-            ends = self.speed[LIMB_NAMES.index(one.second_part)] @ one.normal
-            self.rows.append((time, ends.min(), ends.max(), one))
+        for item in contacts:
+            ends = self.speed[LIMB_NAMES.index(item.second_part)] @ item.normal
+            self.rows.append((time, ends.min(), ends.max(), item))
 
 
 def walked_into(ahead: float, steps: int):
@@ -91,8 +91,8 @@ def walked_into(ahead: float, steps: int):
 def test_the_impact_speed_is_that_of_the_limb_against_the_robot(ahead):
     """The limb as the engine moves it, between its ends, along the normal; a foot swings faster than its person."""
     watched = walked_into(ahead, steps=40)
-    for _, low, high, one in watched.rows[:1]:
-        own = float(one.second_velocity @ one.normal)
+    for _, low, high, item in watched.rows[:1]:
+        own = float(item.second_velocity @ item.normal)
         assert low - 0.05 <= own <= high + 0.05
     event = watched.world.contact_events[0]
     time, low, high, first = watched.rows[0]
@@ -108,9 +108,9 @@ def test_what_swings_is_known_at_every_touch_and_never_faster_than_legs_are():
     """Nothing comes faster than is told; a limb that gives way leaves faster."""
     watched = walked_into(0.6, steps=60)
     assert len(watched.rows) > 10
-    for _, _, high, one in watched.rows:
-        assert float(one.second_velocity @ one.normal) <= high + 0.15
-        assert np.sqrt(one.swing @ one.swing) <= QUICK + 1e-9
+    for _, _, high, item in watched.rows:
+        assert float(item.second_velocity @ item.normal) <= high + 0.15
+        assert np.sqrt(item.swing @ item.swing) <= QUICK + 1e-9
 
 
 def test_an_impact_of_known_values():

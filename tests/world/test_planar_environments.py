@@ -43,11 +43,11 @@ def command(tick: int, seed: int) -> Twist:
     return Twist(0.1 * seed + 0.05 * tick, 0.3 - 0.1 * seed)
 
 
-def digests(one: PlanarWorld) -> list[bytes]:
-    scene = one.scene
+def digests(planar_world: PlanarWorld) -> list[bytes]:
+    scene = planar_world.scene
     return [
         scene.position[e, :n].tobytes() + scene.velocity[e, :n].tobytes() + scene.heading[e, :n].tobytes()
-        for e, n in enumerate(one.slots.tolist())
+        for e, n in enumerate(planar_world.slots.tolist())
     ]
 
 

@@ -79,9 +79,9 @@ def test_closed_surfaces_show_one_side():
     wall = [[(2.0, -1.0, 0.2), (2.0, 0.0, 1.8), (2.0, 1.0, 0.2)]]
     view = camera()
     turned = [[wall[0][0], wall[0][2], wall[0][1]]]
-    seen = [np.any(Rasterizer().labels(triangles(one, closed=True), view, -3)[1] == 0) for one in (wall, turned)]
+    seen = [np.any(Rasterizer().labels(triangles(item, closed=True), view, -3)[1] == 0) for item in (wall, turned)]
     assert sorted(seen) == [False, True]
-    assert all(np.any(Rasterizer().labels(triangles(one), view, -3)[1] == 0) for one in (wall, turned))
+    assert all(np.any(Rasterizer().labels(triangles(item), view, -3)[1] == 0) for item in (wall, turned))
 
 
 def image(drawn, samples=1, shadows=False, look=StageAppearance(), textures=()):  # noqa: B008
@@ -181,7 +181,7 @@ def test_many_samples_are_filtered_as_by_a_lens():
     rows = padded[:-2] + 2 * padded[1:-1] + padded[2:]
     expected = (rows[:, :-2] + 2 * rows[:, 1:-1] + rows[:, 2:] + 8) // 16
     np.testing.assert_array_equal(soft, expected)
-    steps = [np.abs(np.diff(one.astype(int), axis=1)).max() for one in (plain, raster.image(
+    steps = [np.abs(np.diff(item.astype(int), axis=1)).max() for item in (plain, raster.image(
         drawn, view, light, pool, GROUND, samples=4, shadows=False))]  # fmt: skip
     assert steps[1] < 0.8 * steps[0]
 

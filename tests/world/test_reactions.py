@@ -241,15 +241,15 @@ def test_environments_of_a_batch_equal_their_worlds_alone():
     alone = [crowd(seed, count) for seed, count in enumerate(counts)]
     for _ in range(60):
         whole.step({0: Twist(0.5, 0.1)})
-        for one in alone:
-            one.step({0: Twist(0.5, 0.1)})
+        for item in alone:
+            item.step({0: Twist(0.5, 0.1)})
     assert np.any(reaction_codes(whole.scene))
-    assert [bytes_of(whole, e) for e in range(3)] == [bytes_of(one, 0) for one in alone]
+    assert [bytes_of(whole, e) for e in range(3)] == [bytes_of(item, 0) for item in alone]
     put_environments(whole, [1], crowd(7, 3))
     fresh, copy = crowd(7, 3), select_environments(whole, [2, 0])
     for _ in range(40):
-        for one in (whole, fresh, copy):
-            one.step({0: Twist(0.5, 0.1)})
+        for item in (whole, fresh, copy):
+            item.step({0: Twist(0.5, 0.1)})
     assert bytes_of(whole, 1) == bytes_of(fresh, 0)
     assert [bytes_of(copy, 0), bytes_of(copy, 1)] == [bytes_of(whole, 2), bytes_of(whole, 0)]
 

@@ -173,9 +173,9 @@ def test_damaged_controller_files_are_refused_or_read(tmp_path, count):
             text = text[:at] + words[int(rng.integers(len(words)))] + text[at + int(rng.integers(0, 6)) :]
         path.write_text(text)
         try:
-            found = read_controllers(path)
+            controllers = read_controllers(path)
             outcomes["read"] += 1
-            assert all(0.0 < value < 1e6 for one in found for value in one.values.values())
+            assert all(0.0 < value < 1e6 for one in controllers for value in one.values.values())
         except InputError as error:
             outcomes["refused"] += str(error).startswith(str(path))
     assert sum(outcomes.values()) == count

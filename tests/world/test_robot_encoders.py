@@ -126,13 +126,13 @@ def test_capsules_are_described_by_shapes_that_urdf_has() -> None:
             rounded = [part for part in parts if isinstance(part.shape, Capsule)]
             assert len(described) == len(parts) + 2 * len(rounded)
             for part in rounded:
-                (tube,) = [one for one in described if np.array_equal(one.origin, part.origin)]
+                (tube,) = [item for item in described if np.array_equal(item.origin, part.origin)]
                 assert tube.shape == Cylinder(part.shape.radius, part.shape.length)
                 for end in (0.5, -0.5):
                     center = part.origin[:3, 3] + end * part.shape.length * part.origin[:3, 2]
-                    balls = [one for one in described if np.allclose(one.origin[:3, 3], center, atol=1e-12)]
-                    assert Sphere(part.shape.radius) in [one.shape for one in balls]
-                    assert {one.color for one in balls} == {part.color}
+                    balls = [item for item in described if np.allclose(item.origin[:3, 3], center, atol=1e-12)]
+                    assert Sphere(part.shape.radius) in [ball.shape for ball in balls]
+                    assert {ball.color for ball in balls} == {part.color}
 
 
 def test_a_robot_without_a_file_is_described_by_its_links() -> None:

@@ -148,7 +148,7 @@ def test_no_mistake_hides_another(tmp_path):
     )
     with pytest.raises(RobotError) as caught:
         Robot.load(folder(tmp_path, *parts, head='urdf="mine.urdf" base="legs"'))
-    lines = [int(one.split("robot.xml:")[1].split(":")[0]) for one in caught.value.problems]
+    lines = [int(problem.split("robot.xml:")[1].split(":")[0]) for problem in caught.value.problems]
     assert lines == [1, 2, 2, 3, 3, 4, 5, 5, 6, 6], caught.value.problems
 
 

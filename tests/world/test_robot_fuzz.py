@@ -61,4 +61,4 @@ def test_damaged_robots_are_refused_or_converted(tmp_path, count):
         except (RobotError, InputError) as error:
             outcomes["refused"] += bool(str(error))
     assert min(outcomes.values()) > 0
-    assert [one.name for one in tmp_path.iterdir()] == ["r.xacro"]
+    assert [item.name for item in tmp_path.iterdir()] == ["r.xacro"]

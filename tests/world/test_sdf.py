@@ -51,18 +51,18 @@ CAR = model(
 
 
 def test_a_model_is_read():
-    found = read_urdf(CAR)
-    assert (found.name, found.root, found.mass) == ("m", "base", pytest.approx(12.1))
-    poses = found.poses()
+    urdf = read_urdf(CAR)
+    assert (urdf.name, urdf.root, urdf.mass) == ("m", "base", pytest.approx(12.1))
+    poses = urdf.poses()
     np.testing.assert_allclose(poses["left_wheel"][:3, 3], [0.0, 0.2, 0.0], atol=1e-12)
     np.testing.assert_allclose(poses["right_wheel"][:3, 3], [0.0, -0.2, 0.0], atol=1e-12)
     for name in ("left", "right"):
-        turning = found.joints[name]
+        turning = urdf.joints[name]
         assert (turning.kind, turning.motor.effort, turning.damping) == ("continuous", 5.0, 0.1)
         np.testing.assert_allclose(poses[turning.child][:3, :3] @ turning.axis, [0.0, 1.0, 0.0], atol=1e-12)
-    assert found.links["ball"].friction == 0.0
-    assert found.links["base"].visuals[0].color == (0.2, 0.4, 0.6, 1.0)
-    assert found.links["base"].inertial.tensor[0, 1] == pytest.approx(0.001)
+    assert urdf.links["ball"].friction == 0.0
+    assert urdf.links["base"].visuals[0].color == (0.2, 0.4, 0.6, 1.0)
+    assert urdf.links["base"].inertial.tensor[0, 1] == pytest.approx(0.001)
 
 
 def test_a_pose_of_a_joint_moves_the_frame_but_not_the_shapes():
@@ -116,14 +116,14 @@ def test_what_is_wrong_is_said(text, sentence):
 
 
 def test_what_is_left_out_is_told():
-    found = read_urdf(
+    urdf = read_urdf(
         model(
             link("a", "0 0 0 0 0 0", "<plane><normal>0 0 1</normal></plane>"),
             "<include><uri>model://x</uri></include>",
             "<joint name='j' type='fixed'><parent>world</parent><child>a</child></joint>",
         )
     )
-    assert len([text for text in found.warnings if "is left out" in text]) == 4
+    assert len([text for text in urdf.warnings if "is left out" in text]) == 4
 
 
 @pytest.mark.parametrize("count", sizes(150, 3000))

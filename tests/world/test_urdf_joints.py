@@ -96,7 +96,7 @@ def test_those_that_follow_others():
     model = read_urdf(robot(*rows))
     places = model.positions({"j": 0.5})
     assert [float(places[name][0]) for name in "jkl"] == pytest.approx([0.5, 1.1, -1.1])
-    assert [one.name for one in model.movable] == ["j"]
+    assert [item.name for item in model.movable] == ["j"]
     with pytest.raises(InputError, match="the joint 'k' of r follows 'j'; its position cannot be set"):
         model.poses({"k": 1.0})
     physics = mjcf(model, base="fixed", motors={"j": "position"}).load()

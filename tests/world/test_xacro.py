@@ -204,7 +204,7 @@ END = {
 def test_every_real_xacro_file_is_a_robot_of_its_mass_or_a_part_that_names_the_robot(urdf, path):
     name = str(path.relative_to(urdf))
     if name in FOREIGN:
-        masses = [float(one.attributes["value"]) for one in every(parse_robot_file(path).root) if one.tag == "mass"]
+        masses = [float(item.attributes["value"]) for item in every(parse_robot_file(path).root) if item.tag == "mass"]
         assert read_urdf(path, colliders="hull").mass == pytest.approx(sum(masses), rel=1e-9)
         return
     with pytest.raises(RobotError) as caught:

@@ -149,7 +149,7 @@ class Inbox:
         """
         try:
             orders = self._input(topic).orders(fields, sender)
-            stamp = read_stamp(fields) if any(isinstance(one, VelocityOrder) for one in orders) else 0
+            stamp = read_stamp(fields) if any(isinstance(order, VelocityOrder) for order in orders) else 0
         except InputError:
             self.count.refused += 1
             raise
@@ -168,7 +168,7 @@ class Inbox:
         Raises:
             InputError: there is no such service, or too many calls wait.
         """
-        known = [one.name for one in self.interface.services]
+        known = [service.name for service in self.interface.services]
         if service not in known:
             raise InputError(f"there is no service {service!r}{did_you_mean(service, known)}")
         with self._news:
@@ -191,7 +191,7 @@ class Inbox:
     def count_orders(self, kind: type[Order], text: str = "") -> int:
         """Return the number of orders of a kind that wait, with a text in their element."""
         with self._news:
-            return sum(isinstance(one, kind) and text in getattr(one, "xml", text) for one in self._orders)
+            return sum(isinstance(order, kind) and text in getattr(order, "xml", text) for order in self._orders)
 
     def begin_instant(self, nanoseconds: int) -> None:
         """Note that the messages of an instant are sent now, at a simulated time [ns]."""
@@ -213,20 +213,20 @@ class Inbox:
     def take_orders(self) -> list[Order]:
         """Return the orders that wait, and forget them."""
         with self._news:
-            found: list[Order] = [*self._orders, *self._velocity.values()]
+            orders: list[Order] = [*self._orders, *self._velocity.values()]
             self._orders.clear()
             self._velocity.clear()
             self.commanded.clear()
             self.stamped.clear()
             self._taken = self._now
-            return found
+            return orders
 
     def take_calls(self) -> list[ServiceCall]:
         """Return the calls that wait, and forget them."""
         with self._news:
-            found = list(self._calls)
+            service_calls = list(self._calls)
             self._calls.clear()
-            return found
+            return service_calls
 
     def close(self) -> list[ServiceCall]:
         """Refuse further calls, and return those that wait."""
@@ -273,8 +273,8 @@ class Inbox:
         self._orders.append(order)
 
     def _input(self, topic: str) -> InputTopic:
-        for one in self.interface.inputs:
-            if one.name == topic:
-                return one
-        known = [one.name for one in self.interface.inputs]
+        for input_topic in self.interface.inputs:
+            if input_topic.name == topic:
+                return input_topic
+        known = [input_topic.name for input_topic in self.interface.inputs]
         raise InputError(f"{topic!r} is not an input{did_you_mean(topic, known)}; inputs are {', '.join(known)}")

@@ -92,14 +92,14 @@ def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
     ExternalNavigator(timeout=0.5)
     """
     navigator = ExternalNavigator(timeout=timeout)
-    chosen = [one.navigator for one in trial.robots if isinstance(one.navigator, ExternalNavigator)]
-    if chosen and not any(one.source for one in chosen):
+    chosen = [robot.navigator for robot in trial.robots if isinstance(robot.navigator, ExternalNavigator)]
+    if chosen and not any(item.source for item in chosen):
         return trial
 
-    def steered(one: RobotSpec) -> RobotSpec:
-        if chosen and not (isinstance(one.navigator, ExternalNavigator) and one.navigator.source):
-            return one
-        return dataclasses.replace(one, navigator=navigator, deadline=None)
+    def steered(robot_spec: RobotSpec) -> RobotSpec:
+        if chosen and not (isinstance(robot_spec.navigator, ExternalNavigator) and robot_spec.navigator.source):
+            return robot_spec
+        return dataclasses.replace(robot_spec, navigator=navigator, deadline=None)
 
     robots = tuple(map(steered, trial.robots))
     return dataclasses.replace(trial, robots=robots)
@@ -148,13 +148,13 @@ class BridgePort:
 
     def start(self) -> None:
         """Open all transports."""
-        for one in self.transports:
-            one.start(self.interface, self.inbox)
+        for transport in self.transports:
+            transport.start(self.interface, self.inbox)
 
     def stop(self) -> None:
         """Close all transports."""
-        for one in self.transports:
-            one.stop()
+        for transport in self.transports:
+            transport.stop()
 
     def change_trial(self, trial: Trial) -> None:
         """Announce another trial, or the same one from its beginning; clients stay connected."""
@@ -166,7 +166,7 @@ class BridgePort:
         """Send the map and the first instant of a simulation that has begun."""
         trial = simulation.trial
         self._steps = StepMessages(trial, {}, simulation, labelled=self.labelled)
-        self._skipped = {one.name for one in self.interface.inputs}
+        self._skipped = {input_topic.name for input_topic in self.interface.inputs}
         self._scene_every = simulation.world.clock.schedule(trial.recording.period)
         make, now = self._steps.make, simulation.world.clock.nanoseconds
         grid = map_message(make, trial.stage, simulation.world.scene)
@@ -198,7 +198,7 @@ class BridgePort:
 
     def take_orders(self, simulation: Simulation) -> list[Order]:
         """Return the orders for the current instant; what is impossible now is reported to the other programs."""
-        found = []
+        orders = []
         for order in self.inbox.take_orders():
             try:
                 order.check(simulation)
@@ -206,20 +206,20 @@ class BridgePort:
                 self.inbox.count.refused += 1
                 self.report("error", str(error))
                 continue
-            found.append(order)
-        return found
+            orders.append(order)
+        return orders
 
     def serve(self, simulation: Simulation) -> None:
         """Answer the calls that wait."""
-        for one in self.transports:
-            one.poll()
+        for transport in self.transports:
+            transport.poll()
         for call in self.inbox.take_calls():
             answer_call(call, simulation, self.control, self.inbox)
 
     def report(self, level: str, text: str) -> None:
         """Tell all other programs about a problem."""
-        for one in self.transports:
-            one.report(level, text)
+        for transport in self.transports:
+            transport.report(level, text)
 
     @property
     def is_heard(self) -> bool:
@@ -228,14 +228,14 @@ class BridgePort:
 
     def _announce(self, trial: Trial) -> None:
         self.interface = self.inbox.interface = self.describe(trial)
-        self._skipped = {one.name for one in self.interface.inputs}
-        for one in self.transports:
-            one.start(self.interface, self.inbox)
+        self._skipped = {input_topic.name for input_topic in self.interface.inputs}
+        for transport in self.transports:
+            transport.start(self.interface, self.inbox)
 
     def _is_wanted(self, topic: str) -> bool:
-        return any(one.wants(topic) for one in self.transports)
+        return any(transport.wants(topic) for transport in self.transports)
 
     def _send(self, messages: list[StepMessage]) -> None:
         if messages:
-            for one in self.transports:
-                one.publish(messages)
+            for transport in self.transports:
+                transport.publish(messages)

@@ -81,9 +81,11 @@ def entities(simulation: Simulation) -> list[Entity]:
     world = simulation.world
     ids, active = world.ids[0], world.scene.active[0]
     found = [
-        Entity(one.robot.name, ROBOT, int(ids[one.agent]), one.agent) for one in simulation.robots if active[one.agent]
+        Entity(robot.robot.name, ROBOT, int(ids[robot.agent]), robot.agent)
+        for robot in simulation.robots
+        if active[robot.agent]
     ]
-    robots = {one.slot for one in found} | {one.agent for one in simulation.robots}
+    robots = {one.slot for one in found} | {robot.agent for robot in simulation.robots}
     slots = sorted((int(slot) for slot in np.flatnonzero(active[: world.slots[0]])), key=lambda slot: int(ids[slot]))
     return found + [Entity(f"person_{ids[slot]}", HUMAN, int(ids[slot]), slot) for slot in slots if slot not in robots]
 
@@ -94,7 +96,7 @@ def entity_of(simulation: Simulation, name: Any) -> Entity:
     Raises:
         LookupError: there is none.
     """
-    known = {one.name: one for one in entities(simulation)}
+    known = {entity.name: entity for entity in entities(simulation)}
     if name not in known:
         raise LookupError(f"there is no entity {str(name)[:80]!r}{did_you_mean(str(name)[:80], known)}")
     return known[name]
@@ -118,7 +120,7 @@ def filter_entities(simulation: Simulation, filters: Mapping[str, Any]) -> list[
         wanted = _compile(filters["filter"])
         found = [one for one in found if wanted.search(one.name)]
     if filters.get("categories"):
-        kinds = {one.get("category") if isinstance(one, Mapping) else one for one in filters["categories"]}
+        kinds = {item.get("category") if isinstance(item, Mapping) else item for item in filters["categories"]}
         found = [one for one in found if one.category in kinds]
     if points:
         found = [one for one in found if _distance(simulation, one, bounds["type"], points) <= 0.0]
@@ -128,7 +130,7 @@ def filter_entities(simulation: Simulation, filters: Mapping[str, Any]) -> list[
 def _distance(simulation: Simulation, entity: Entity, kind: int, points: Any) -> float:
     """Return the distance of an entity from a box or sphere in the plane [m], not above 0 if they overlap."""
     x, y = simulation.world.scene.position[0, entity.slot].tolist()
-    first, second = ((read_number(one, "x"), read_number(one, "y")) for one in points)
+    first, second = ((read_number(point, "x"), read_number(point, "y")) for point in points)
     if kind == SPHERE:
         gap = math.dist((x, y), first) - second[0]
     else:
@@ -226,7 +228,7 @@ def _checked_order(
     if not uri and not text:
         raise SpawnError(NO_RESOURCE, "give a uri or a resource_string")
     name, space = str(request.get("name") or ""), str(request.get("entity_namespace") or "").strip("/")
-    taken = {one.name for one in entities(simulation)}
+    taken = {entity.name for entity in entities(simulation)}
     renames = bool(request.get("allow_renaming"))
     if name in taken and not renames:
         raise SpawnError(NAME_NOT_UNIQUE, f"there is an entity {name[:80]!r}")
@@ -479,7 +481,7 @@ class Verbs:
 
     def spawn_entities(self, request: Fields) -> Response:
         """Add several entities; some can fail."""
-        rows = [self.spawn_entity(one) or {} for one in request["spawn_requests"]]
+        rows = [self.spawn_entity(item) or {} for item in request["spawn_requests"]]
         failed = any(row["result"]["result"] != OK for row in rows)
         return result(SPAWN_FAILED if failed else OK, "not all were added" if failed else "", results=rows)
 
@@ -493,7 +495,9 @@ class Verbs:
 
     def get_entities(self, request: Fields) -> Response:
         """Return the names of robots and people."""
-        return result(entities=[one.name for one in filter_entities(self.simulation, request.get("filters") or {})])
+        return result(
+            entities=[entity.name for entity in filter_entities(self.simulation, request.get("filters") or {})]
+        )
 
     def get_entities_states(self, request: Fields) -> Response:
         """Return the names, poses and velocities of robots and people."""

@@ -73,7 +73,9 @@ class StackPort(BridgePort):
         """Return the topics of the robots of the software."""
         whole = RobotInterface.of(trial)
         inputs = tuple(
-            one for one in whole.inputs if one.robot in self.robots and one.name.rpartition("/")[2] in DRIVEN
+            input_topic
+            for input_topic in whole.inputs
+            if input_topic.robot in self.robots and input_topic.name.rpartition("/")[2] in DRIVEN
         )
         outputs = [*filter(self._offers, whole.outputs), *(_goal_topic(name) for name in self.robots)]
         return dataclasses.replace(whole, outputs=tuple(outputs), inputs=inputs, services=())
@@ -97,26 +99,26 @@ class StackPort(BridgePort):
                 pose = make.make(GOAL, header=make.header(now), pose=make.pose(*goal, 0.0))
                 yield StepMessage(f"/{name}/goal", GOAL, now, make, pose)
 
-    def _offers(self, one: OutputTopic) -> bool:
+    def _offers(self, output_topic: OutputTopic) -> bool:
         """Return whether the software may see a topic: the one rule, for all transports."""
-        return (self.truth or not one.truth) and (not one.robot or one.robot in self.robots)
+        return (self.truth or not output_topic.truth) and (not output_topic.robot or output_topic.robot in self.robots)
 
     def _send(self, messages: list[StepMessage]) -> None:
         """Send what the software may see; of the transforms those of its robots."""
-        offered = {one.name for one in self.interface.outputs}
-        super()._send([self._own(one) for one in messages if one.topic in offered])
+        offered = {output.name for output in self.interface.outputs}
+        super()._send([self._own(message) for message in messages if message.topic in offered])
 
-    def _own(self, one: StepMessage) -> StepMessage:
-        if one.topic != "/tf" or self.truth:
-            return one
-        rows = [row for row in one.message.transforms if row.child_frame_id.partition("/")[0] in self.robots]
-        return dataclasses.replace(one, content=type(one.message)(transforms=rows))
+    def _own(self, step_message: StepMessage) -> StepMessage:
+        if step_message.topic != "/tf" or self.truth:
+            return step_message
+        rows = [row for row in step_message.message.transforms if row.child_frame_id.partition("/")[0] in self.robots]
+        return dataclasses.replace(step_message, content=type(step_message.message)(transforms=rows))
 
     def _is_wanted(self, topic: str) -> bool:
         """Return whether the software subscribes a topic that it may have."""
         place = topic.rstrip("/")
-        names = [one.name for one in self.interface.outputs]
-        offered = place in names or (topic != place and any(one.startswith(topic) for one in names))
+        names = [output.name for output in self.interface.outputs]
+        offered = place in names or (topic != place and any(name.startswith(topic) for name in names))
         return offered and super()._is_wanted(topic)
 
 
@@ -313,22 +315,22 @@ class StackLink:
             InputError: the program has ended, is not connected any more, or does not answer.
         """
         ended = bool(simulation.may_end()[0])
-        controls = [one for one in simulation.robots if one.robot.name in self.robots]
-        due = [one for one in controls if not ended and not one.arrived[0] and _is_due(one, simulation)]
-        kept = [one for one in self._port.take_orders(simulation) if not hasattr(one, "forward")]
+        controls = [robot for robot in simulation.robots if robot.robot.name in self.robots]
+        due = [control for control in controls if not ended and not control.arrived[0] and _is_due(control, simulation)]
+        kept = [order for order in self._port.take_orders(simulation) if not hasattr(order, "forward")]
         if not self._begun:
             self._begun = True
             self._port.begin(simulation)
-            self._wait_for_start(simulation, {one.robot.name for one in due})
+            self._wait_for_start(simulation, {item.robot.name for item in due})
         else:
             self._port.publish(simulation)
             self._wait(simulation, due)
-        found = [*kept, *self._port.take_orders(simulation)]
-        found = [one for one in found if not self._is_dropped(one, due, simulation)]
+        result = [*kept, *self._port.take_orders(simulation)]
+        result = [one for one in result if not self._is_dropped(one, due, simulation)]
         if not self._held:
-            return found
-        stops = [VelocityOrder(robot=one.robot.name, source=self._transport.name) for one in controls]
-        return [*(one for one in found if not isinstance(one, VelocityOrder)), *stops]
+            return result
+        stops = [VelocityOrder(robot=control.robot.name, source=self._transport.name) for control in controls]
+        return [*(one for one in result if not isinstance(one, VelocityOrder)), *stops]
 
     def hold(self, stop: bool, reason: str) -> str:
         """Replace the velocities of the program by 0, or use them again; it goes on deciding meanwhile."""
@@ -343,7 +345,7 @@ class StackLink:
         """Return whether a velocity command comes between two decisions, or after the deadline."""
         if not hasattr(order, "forward"):
             return False
-        control = next((one for one in due if one.robot.name == getattr(order, "robot", "")), None)
+        control = next((item for item in due if item.robot.name == getattr(order, "robot", "")), None)
         return control is None or int(control.timer.missed[0]) == int(simulation.ticks[0])
 
     def _wait_for_start(self, simulation: Simulation, names: set[str]) -> None:
@@ -364,7 +366,7 @@ class StackLink:
     def _wait(self, simulation: Simulation, due: Sequence[RobotControl]) -> None:
         """Wait for a command for each robot, and note those that come after its deadline."""
         inbox, begin = self._port.inbox, time.perf_counter()
-        missing = {one.robot.name: one for one in due}
+        missing = {item.robot.name: item for item in due}
         while missing:
             for name in [name for name in missing if name in inbox.commanded]:
                 control, spent = missing.pop(name), time.perf_counter() - begin
@@ -413,7 +415,7 @@ class StackLink:
     @property
     def summary(self) -> tuple[int, float, float]:
         """Number of measured decisions, and median and 99th percentile of their compute times [s]."""
-        known = [one for one in self.seconds if not math.isnan(one)]
+        known = [second for second in self.seconds if not math.isnan(second)]
         if not known:
             return 0, math.nan, math.nan
         return len(known), float(np.median(known)), float(np.percentile(known, 99))

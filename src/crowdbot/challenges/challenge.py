@@ -62,7 +62,7 @@ class Challenge:
             "public-seeds": list(self.public_seeds),
             "held-back": self.held_back,
             "statistics": list(self.statistics),
-            "rank": [list(one) for one in self.rank],
+            "rank": [list(item) for item in self.rank],
             "limits": dict(self.limits),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -133,7 +133,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def _texts(name: str, value: Any) -> tuple[str, ...]:
-    if not isinstance(value, list) or not value or not all(isinstance(one, str) for one in value):
+    if not isinstance(value, list) or not value or not all(isinstance(item, str) for item in value):
         raise InputError(f"{name} = {value!r} must be a list of texts that is not empty")
     if len(set(value)) < len(value):
         raise InputError(f"{name}: an entry is there twice")
@@ -141,16 +141,16 @@ def _texts(name: str, value: Any) -> tuple[str, ...]:
 
 
 def _trials(file: Path, names: tuple[str, ...]) -> tuple[Trial, ...]:
-    found: list[Trial] = []
+    trials: list[Trial] = []
     for name in names:
         beside = file.parent / name
         if Path(name).is_absolute() or ".." in Path(name).parts:
             raise InputError(f"trials: {name!r} must be a built-in name or a file beside the challenge")
-        found += expand_sweeps(load_trial(str(beside) if beside.is_file() else name))
-    for trial in found:
+        trials += expand_sweeps(load_trial(str(beside) if beside.is_file() else name))
+    for trial in trials:
         if not trial.robots:
             raise InputError(f"trials: {trial.name!r} has no robot")
-    return tuple(found)
+    return tuple(trials)
 
 
 def _held_back(value: Any) -> str:
@@ -234,11 +234,11 @@ def load_seeds(path: Path, expected: str) -> SecretSeeds:
     """
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
-        found = SecretSeeds(str(values["seeds"]), str(values["salt"]))
+        secret_seeds = SecretSeeds(str(values["seeds"]), str(values["salt"]))
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path} has no secret seeds ({type(error).__name__})") from None
-    if found.hash != expected:
+    if secret_seeds.hash != expected:
         raise InputError(
-            f"{path}: these seeds have the hash {found.hash[:12]}..., the challenge has {expected[:12]}..."
+            f"{path}: these seeds have the hash {secret_seeds.hash[:12]}..., the challenge has {expected[:12]}..."
         )
-    return found
+    return secret_seeds

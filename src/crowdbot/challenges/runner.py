@@ -96,7 +96,7 @@ def write_board(challenge: Challenge, entries: Sequence[ChallengeEntry], path: P
             raise InputError(f"entries: {name[0]!r} with {name[1]} seeds is there twice")
     style = importlib.resources.files("crowdbot").joinpath("assets", "evaluation", "report.css")
     kinds = [kind for kind in ("held back", "public") if any(entry.seeds == kind for entry in entries)]
-    tables = "".join(_table(challenge, [one for one in entries if one.seeds == kind], kind) for kind in kinds)
+    tables = "".join(_table(challenge, [entry for entry in entries if entry.seeds == kind], kind) for kind in kinds)
     page = (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'>"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>"

@@ -201,10 +201,10 @@ def _parse(words: Sequence[str]) -> argparse.Namespace:
 
     chosen = {options.command, getattr(options, "verb", None)}
     while deeper := [
-        one
+        choice
         for action in parser._actions
         if isinstance(action, argparse._SubParsersAction)
-        for name, one in action.choices.items()
+        for name, choice in action.choices.items()
         if name in chosen
     ]:
         parser = deeper[0]

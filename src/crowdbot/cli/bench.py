@@ -189,13 +189,13 @@ def _print_environments(found: EnvironmentReport) -> None:
     for row in found.rows:
         cells.append((row.name, "crowdbot", *_rate(row.rate), row.unit, "", ""))
         cells += [
-            ("", one.peer, *_rate(one.rate), row.unit, number(one.ratio_cpu, 2), number(one.ratio_wall, 2))
-            for one in row.peers
+            ("", peer.peer, *_rate(peer.rate), row.unit, number(peer.ratio_cpu, 2), number(peer.ratio_wall, 2))
+            for peer in row.peers
         ]
     head = ("name", "simulator", "per CPU s", "per wall s", "unit", "ratio CPU", "ratio wall")
     print_table("environments", head, cells, caption=found.machine, words=2)
     print("\n".join(f"{row.name}: {row.protocol}" for row in found.rows))
-    for peer, protocol in {one.peer: one.protocol for row in found.rows for one in row.peers}.items():
+    for peer, protocol in {peer.peer: peer.protocol for row in found.rows for peer in row.peers}.items():
         print(f"{peer}: {protocol}")
     calls = [
         (r.name, str(r.environments), number(r.python_calls, 1), number(r.builtin_calls, 1), number(r.ratio, 2))
@@ -203,11 +203,13 @@ def _print_environments(found: EnvironmentReport) -> None:
     ]
     print_table("calls per step", ("name", "E", "Python", "compiled", "ratio"), calls)
     trials = []
-    for one in found.trials:
-        if one.single is None or one.batch is None:
-            trials.append((one.name, "", "", "", "", "", one.reason))
+    for trial in found.trials:
+        if trial.single is None or trial.batch is None:
+            trials.append((trial.name, "", "", "", "", "", trial.reason))
             continue
-        trials.append((one.name, str(one.agents), *_rate(one.single), *_rate(one.batch), number(one.ratio, 1)))
+        trials.append(
+            (trial.name, str(trial.agents), *_rate(trial.single), *_rate(trial.batch), number(trial.ratio, 1))
+        )
     batch = f"E = {found.sizes.trial_environments}"
     head = ("trial", "agents", "E = 1, per CPU s", "wall s", f"{batch}, per CPU s", "wall s", "ratio CPU")
     load = ", ".join(number(value, 2) for value in found.load)

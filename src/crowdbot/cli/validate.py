@@ -89,7 +89,7 @@ def _contacts(options: argparse.Namespace, models: Mapping[str, CrowdModel]) -> 
     if options.json:
         print_json({"models": rows, "page": str(page)})
         return 0
-    failed = {name: [key for key, one in row.items() if not one["passed"]] for name, row in rows.items()}
+    failed = {name: [key for key, item in row.items() if not item["passed"]] for name, row in rows.items()}
     table = [(name, ", ".join(keys) or "-") for name, keys in failed.items()]
     print_table("contacts", ("model", "limits exceeded in"), table)
     print(f"page      {page}")

@@ -68,17 +68,17 @@ def sweep_trials(
     Raises:
         InputError: there are too many combinations.
     """
-    count = math.prod(len(one.levels) for one in factors)
+    count = math.prod(len(factor.levels) for factor in factors)
     if count > MOST_CELLS:
         raise InputError(f"the sweep has {count} combinations, at most {MOST_CELLS} are allowed")
-    found: list[tuple[Trial, dict[str, str]]] = []
-    for row in itertools.product(*(one.levels for one in factors)):
-        levels = {one.name: level for one, level in zip(factors, row, strict=True)}
+    result: list[tuple[Trial, dict[str, str]]] = []
+    for row in itertools.product(*(factor.levels for factor in factors)):
+        levels = {factor.name: level for factor, level in zip(factors, row, strict=True)}
         trial = load(levels)
         if trial.sweeps:
             raise InputError(f"trial {trial.name!r} has own sweeps; remove them to sweep with --sweep")
         words = ", ".join(f"{re.split('[./]', name)[-1]} {level}" for name, level in levels.items())
         label = f"{trial.name[:30]} [{words}]"
-        short = label if len(label) <= 80 else f"{trial.name[:30]} [{len(found) + 1}]"
-        found.append((dataclasses.replace(trial, name=short), levels))
-    return found
+        short = label if len(label) <= 80 else f"{trial.name[:30]} [{len(result) + 1}]"
+        result.append((dataclasses.replace(trial, name=short), levels))
+    return result

@@ -76,7 +76,7 @@ def run_job(job: RunJob) -> list[RunRow]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RunFailureWarning)
         episodes = _episodes(trial, job.seeds)
-        others = {name: _episodes(one, job.seeds) for name, one in paired_variants(trial, job.families).items()}
+        others = {name: _episodes(variant, job.seeds) for name, variant in paired_variants(trial, job.families).items()}
     rows = []
     for k, (seed, episode) in enumerate(zip(job.seeds, episodes, strict=True)):
         runs = {name: run for name, found in others.items() if isinstance(run := found[k], Episode)}
@@ -92,7 +92,7 @@ def _episodes(trial: Trial, seeds: Sequence[int]) -> Sequence[Episode | str]:
         raise
     except CrowdbotError:
         episodes = [_one(trial, seed) for seed in seeds]
-    if any(isinstance(one, Episode) and one.outcome == "interrupted" for one in episodes):
+    if any(isinstance(episode, Episode) and episode.outcome == "interrupted" for episode in episodes):
         raise KeyboardInterrupt
     return episodes
 

@@ -65,7 +65,7 @@ def place_reality(real: Mapping[str, float], runs: Sequence[RunRow], mirror: boo
     >>> place_reality({"path_length": 24.5}, rows)[0].quantile
     0.25
     """
-    found = []
+    real_placements = []
     for name, value in real.items():
         if mirror and _is_of_robot(name):
             continue
@@ -76,16 +76,16 @@ def place_reality(real: Mapping[str, float], runs: Sequence[RunRow], mirror: boo
         near = np.isclose(values, value, rtol=1e-9, atol=1e-12)
         below = float(np.sum((values < value) & ~near)) + 0.5 * float(near.sum())
         about = proportion_interval(round(below), len(values), method="wilson")
-        first, median, last = (float(one) for one in np.quantile(values, [INSIDE[0], 0.5, INSIDE[1]]))
+        first, median, last = (float(item) for item in np.quantile(values, [INSIDE[0], 0.5, INSIDE[1]]))
         slack = 1e-9 * max(1.0, abs(value))
-        found.append(
+        real_placements.append(
             RealPlacement(
                 name, float(value), below / len(values), min(about.low, below / len(values)),
                 max(about.high, below / len(values)), first, median, last, len(values),
                 bool(first - slack <= value <= last + slack), bool(near.all()),
             )
         )  # fmt: skip
-    return found
+    return real_placements
 
 
 def _is_of_robot(name: str) -> bool:
@@ -100,7 +100,7 @@ def reality_svg(placements: Sequence[RealPlacement]) -> str:
 
     The grey band is the central 95 % of the simulations; filled dots are inside.
     """
-    rows = [one for one in placements if not one.constant]
+    rows = [placement for placement in placements if not placement.constant]
     left, width, step = 230, 420, 18
     height = 40 + step * len(rows)
 
@@ -112,15 +112,15 @@ def reality_svg(placements: Sequence[RealPlacement]) -> str:
     for share in (0.0, 0.25, 0.5, 0.75, 1.0):
         parts.append(f'<text x="{x_of(share):.1f}" y="16" text-anchor="middle">{share:g}</text>')
         parts.append(f'<path d="M{x_of(share):.1f} 22V{height - 12}" stroke="#c5ced8"/>')
-    for k, one in enumerate(rows):
+    for k, row in enumerate(rows):
         y = 24 + step * (k + 0.5)
-        color = "#1b6ca8" if one.inside else "#c8553d"
-        name = html.escape(one.metric.replace("_", " "))
+        color = "#1b6ca8" if row.inside else "#c8553d"
+        name = html.escape(row.metric.replace("_", " "))
         parts.append(f'<text x="{left - 12}" y="{y + 4:.1f}" text-anchor="end">{name}</text>')
-        parts.append(f'<path d="M{x_of(one.low):.1f} {y:.1f}H{x_of(one.high):.1f}" stroke="{color}" stroke-width="2"/>')
-        fill = color if one.inside else "#fff"
+        parts.append(f'<path d="M{x_of(row.low):.1f} {y:.1f}H{x_of(row.high):.1f}" stroke="{color}" stroke-width="2"/>')
+        fill = color if row.inside else "#fff"
         paint = f'fill="{fill}" stroke="{color}" stroke-width="2"'
-        parts.append(f'<circle cx="{x_of(one.quantile):.1f}" cy="{y:.1f}" r="4" {paint}/>')
+        parts.append(f'<circle cx="{x_of(row.quantile):.1f}" cy="{y:.1f}" r="4" {paint}/>')
     body = "".join(parts)
     style = 'font-family="system-ui, sans-serif" font-size="12"'
     return (

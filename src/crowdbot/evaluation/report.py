@@ -33,16 +33,16 @@ def effects_svg(effects: Sequence[FactorEffect]) -> str:
     A panel for each factor has the mean at each level, and a panel for each pair of factors has a line for each level
     of the second one; parallel lines are no interaction. Bars are intervals of 95 %.
     """
-    known = [one for one in effects if math.isfinite(one.mean.value)]
+    known = [effect for effect in effects if math.isfinite(effect.mean.value)]
     if not known:
         return ""
-    low = min(one.mean.low for one in known)
-    high = max(one.mean.high for one in known)
+    low = min(item.mean.low for item in known)
+    high = max(item.mean.high for item in known)
     if high - low < 1e-12:
         low, high = low - 0.5, high + 0.5
     groups: dict[tuple[str, ...], list[FactorEffect]] = {}
-    for one in known:
-        groups.setdefault(one.factors, []).append(one)
+    for item in known:
+        groups.setdefault(item.factors, []).append(item)
     panels = [_panel(k, factors, rows, low, high) for k, (factors, rows) in enumerate(groups.items())]
     columns = min(3, len(panels))
     lines = -(-len(panels) // columns)
@@ -159,7 +159,7 @@ def _verdicts(cells: Sequence[CellResult], requirements: Sequence[Requirement]) 
         verdict = judge_cell(cell, requirements)
         kind = "safe" if verdict.safe else "unsafe"
         notes = (*cell.remarks, realism_notice(cell.realism))
-        contacts = [f"Hardest contact with a person: {one.sentence}" for one in person_contacts(cell)[:1]]
+        contacts = [f"Hardest contact with a person: {contact.sentence}" for contact in person_contacts(cell)[:1]]
         small = (*contacts, *(f"Note: {note}" for note in notes if note), verdict.limit)
         limit = "".join(f"<br><small>{html.escape(text)}</small>" for text in small)
         parts.append(f"<p class='verdict {kind}'>{html.escape(verdict.sentence)}{limit}</p>")
@@ -204,9 +204,10 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _results(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
-    head = ["trial", "navigator", "robot", "runs", *(one.title for one in statistics)]
+    head = ["trial", "navigator", "robot", "runs", *(statistic.title for statistic in statistics)]
     rows = [
-        [*_names(cell), str(len(cell.valid)), *(str(cell.estimate(one)) for one in statistics)] for cell in result.cells
+        [*_names(cell), str(len(cell.valid)), *(str(cell.estimate(statistic)) for statistic in statistics)]
+        for cell in result.cells
     ]
     return _table(head, rows) + _definitions(statistics)
 
@@ -214,7 +215,7 @@ def _results(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
 def _definitions(statistics: Sequence[Statistic]) -> str:
     """Return what the columns are, from the table of metrics."""
     table = metric_table()
-    metrics = dict.fromkeys(one.metric for one in statistics if one.metric in table)
+    metrics = dict.fromkeys(statistic.metric for statistic in statistics if statistic.metric in table)
     rows = [f"<li><b>{name.replace('_', ' ')}</b>: {html.escape(table[name].formula)}</li>" for name in metrics]
     return f"<details><summary>What the columns are</summary><ul>{''.join(rows)}</ul></details>" if rows else ""
 
@@ -224,14 +225,14 @@ def _contacts(cells: Sequence[CellResult]) -> str:
     rows = [
         [
             *_names(cell),
-            str(one.seed),
-            one.region or "unknown",
-            one.severity,
-            f"{one.speed:.2f}",
-            one.cause or "unknown",
+            str(contact.seed),
+            contact.region or "unknown",
+            contact.severity,
+            f"{contact.speed:.2f}",
+            contact.cause or "unknown",
         ]
         for cell in cells
-        for one in person_contacts(cell)[:MOST_CONTACTS]
+        for contact in person_contacts(cell)[:MOST_CONTACTS]
     ]
     head = ["trial", "navigator", "robot", "seed", "body region", "severity [force / limit]", "impact speed [m/s]"]
     table = _table([*head, "approached by"], rows)
@@ -248,7 +249,7 @@ def _realism(cells: Sequence[CellResult]) -> str:
     trials: dict[tuple[str, ...], dict[str, None]] = {}
     for cell in cells:
         if cell.realism:
-            trials.setdefault(tuple(one.sentence for one in cell.realism), {})[cell.trial] = None
+            trials.setdefault(tuple(item.sentence for item in cell.realism), {})[cell.trial] = None
     if not trials:
         return ""
     table = load_clearances()
@@ -307,10 +308,10 @@ def _requirements(result: EvaluationResult, requirements: Sequence[Requirement])
 
 def _comparisons(comparisons: Sequence[PairedComparison]) -> str:
     rows = [
-        [one.trial, one.robot or "-", _with_unit(one.metric), one.first, one.second, str(one.difference),
-         _p_value(one.p_value), _p_value(one.corrected)]
-        for one in comparisons
-        if not math.isnan(one.p_value)
+        [comparison.trial, comparison.robot or "-", _with_unit(comparison.metric), comparison.first,
+         comparison.second, str(comparison.difference), _p_value(comparison.p_value), _p_value(comparison.corrected)]
+        for comparison in comparisons
+        if not math.isnan(comparison.p_value)
     ]  # fmt: skip
     head = ["trial", "robot", "metric", "first", "second", "second - first", "p", "p corrected"]
     table = _table(head, rows)
@@ -326,13 +327,13 @@ def _effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
         "<h2>Effects of factors</h2><p>The effect of a level is its mean minus the mean of all levels; that of a"
         " pair of levels is what is left after both. Intervals: bootstrap over seeds, 95 %.</p>"
     ]
-    for metric in dict.fromkeys(one.metric for one in statistics):
+    for metric in dict.fromkeys(statistic.metric for statistic in statistics):
         groups: dict[tuple[str, str, str], list[FactorEffect]] = {}
-        for one in factor_effects(result, metric):
-            groups.setdefault((one.trial, one.method, one.robot), []).append(one)
+        for effect in factor_effects(result, metric):
+            groups.setdefault((effect.trial, effect.method, effect.robot), []).append(effect)
         for names, rows in groups.items():
             title = html.escape(f"{_with_unit(metric)}: {', '.join(filter(None, names))}")
-            cells = [(" and ".join(one.factors), ", ".join(one.levels), str(one.mean), str(one.effect)) for one in rows]
+            cells = [(" and ".join(row.factors), ", ".join(row.levels), str(row.mean), str(row.effect)) for row in rows]
             parts.append(f"<h3>{title}</h3>{effects_svg(rows)}")
             parts.append(_table(["factor", "level", "mean", "effect"], cells))
     return "".join(parts)

@@ -80,7 +80,9 @@ class CellResult:
 
 def remark_lines(cells: Iterable[CellResult | EvaluationCell]) -> list[str]:
     """Return the remarks on robots in their trials, once each, such as ``Note on doorway on wheelchair: ...``."""
-    found = ((cell.trial + (f" on {cell.robot}" if cell.robot else ""), one) for cell in cells for one in cell.remarks)
+    found = (
+        (cell.trial + (f" on {cell.robot}" if cell.robot else ""), remark) for cell in cells for remark in cell.remarks
+    )
     return [f"Note on {where}: {remark}" for where, remark in dict.fromkeys(found)]
 
 
@@ -141,7 +143,7 @@ class EvaluationResult:
                 "protocol": dict(cell.protocol),
                 **({"factors": dict(cell.factors), "base": cell.base} if cell.factors else {}),
                 **({"remarks": list(cell.remarks)} if cell.remarks else {}),
-                **({"realism": [dataclasses.asdict(one) for one in cell.realism]} if cell.realism else {}),
+                **({"realism": [dataclasses.asdict(item) for item in cell.realism]} if cell.realism else {}),
                 "runs": [row_values(row) for row in cell.runs],
             }
             for cell in self.cells
@@ -185,8 +187,8 @@ def result_schema() -> dict[str, Any]:
     {'const': 'crowdbot-evaluation/1'}
     """
     file = importlib.resources.files("crowdbot").joinpath("assets", "evaluation", "result.schema.json")
-    found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    return found
+    loads: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return loads
 
 
 def provenance() -> dict[str, Any]:

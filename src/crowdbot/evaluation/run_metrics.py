@@ -111,13 +111,13 @@ def episode_metrics(
         found = {name: value for name, value in found.items() if not TOUCH.search(name)}
     if episode.trial.world == "physics" and "severity" in names:
         own = [
-            one
-            for one in episode.collisions
-            if tuple(one.first) == ("robot", episode.robots[0]) and one.second.kind == "person"
+            collision
+            for collision in episode.collisions
+            if tuple(collision.first) == ("robot", episode.robots[0]) and collision.second.kind == "person"
         ]
         found |= impact_region_metrics(own, REGIONS, float(episode.trial.robots[0].mass))
         if episode.trial.balance:
-            caused = [one for one in episode.falls if (one.cause, one.causer) == ("robot", episode.robots[0])]
+            caused = [fall for fall in episode.falls if (fall.cause, fall.causer) == ("robot", episode.robots[0])]
             found |= fall_metrics(episode.falls, caused)
     others = paired or {}
     for address in filter(is_own_metric, names):
@@ -176,16 +176,20 @@ def _touched(episode: Episode) -> dict[str, float]:
     The log knows only discs at its records: it misses a foot that is run over in the physics world.
     """
     own, robots = int(episode.ids[episode.robots[0]]), {int(episode.ids[k]) for k in episode.robots}
-    pairs = [(one.robot, one.other) for _, one in episode.contacts]
+    pairs = [(item.robot, item.other) for _, item in episode.contacts]
     touched = {second if first == own else first for first, second in pairs if own in (first, second)}
     found = {
-        "person_collision": float(any(one not in robots and one != WALL for one in touched)),
-        "robot_collision": float(any(one in robots for one in touched)),
+        "person_collision": float(any(item not in robots and item != WALL for item in touched)),
+        "robot_collision": float(any(item in robots for item in touched)),
         "wall_collision": float(WALL in touched),
     }
     if episode.trial.world == "physics":
         body = ("robot", own)
-        events = [(one.first, one.second) for one in episode.collisions if body in (one.first, one.second)]
+        events = [
+            (collision.first, collision.second)
+            for collision in episode.collisions
+            if body in (collision.first, collision.second)
+        ]
         counts = Counter((second if first == body else first).kind for first, second in events)
         found |= {f"{kind}_collisions": float(counts[word]) for word, kind in BODY_KINDS.items()}
         found["object_collision"] = float(counts["prop"] > 0)

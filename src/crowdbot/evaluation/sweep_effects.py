@@ -68,20 +68,20 @@ def factor_effects(
             groups.setdefault((cell.base, cell.method, cell.robot), []).append(cell)
     if not groups:
         raise InputError("the evaluation has no factors; sweep values, as in --sweep robot.visible=true,false")
-    found: list[FactorEffect] = []
+    effects: list[FactorEffect] = []
     for names, cells in groups.items():
         means = _cell_means(cells, metric, seed)
-        found += [
+        effects += [
             FactorEffect(*names, metric, factors, levels, _estimate(mean, confidence), _estimate(effect, confidence))
             for factors, levels, mean, effect in _effects(cells, means)
         ]
-    return found
+    return effects
 
 
 def _cell_means(cells: Sequence[CellResult], metric: str, seed: int) -> Floats:
     """Return the mean of each cell ``[1 + R, C]``: of all runs first, then of each resample of the seeds."""
     seeds = list(dict.fromkeys(row.seed for cell in cells for row in cell.runs))
-    place = {one: k for k, one in enumerate(seeds)}
+    place = {seed: k for k, seed in enumerate(seeds)}
     values = np.full((len(cells), len(seeds)), math.nan)
     for c, cell in enumerate(cells):
         for row in cell.valid:
@@ -101,18 +101,18 @@ def _effects(
     """Return factors, levels, means and effects ``[1 + R]`` of each main effect and interaction."""
     factors = {name: list(dict.fromkeys(cell.factors[name] for cell in cells)) for name in cells[0].factors}
     all_mean = means.mean(axis=1)
-    found: list[tuple[tuple[str, ...], tuple[str, ...], Floats, Floats]] = []
+    effects: list[tuple[tuple[str, ...], tuple[str, ...], Floats, Floats]] = []
     main: dict[tuple[str, str], Floats] = {}
     for name, levels in factors.items():
         for level in levels:
             mean = means[:, _chosen(cells, {name: level})].mean(axis=1)
             main[name, level] = mean - all_mean
-            found.append(((name,), (level,), mean, main[name, level]))
-    for one, two in itertools.combinations(factors, 2):
-        for a, b in itertools.product(factors[one], factors[two]):
-            mean = means[:, _chosen(cells, {one: a, two: b})].mean(axis=1)
-            found.append(((one, two), (a, b), mean, mean - all_mean - main[one, a] - main[two, b]))
-    return found
+            effects.append(((name,), (level,), mean, main[name, level]))
+    for item, two in itertools.combinations(factors, 2):
+        for a, b in itertools.product(factors[item], factors[two]):
+            mean = means[:, _chosen(cells, {item: a, two: b})].mean(axis=1)
+            effects.append(((item, two), (a, b), mean, mean - all_mean - main[item, a] - main[two, b]))
+    return effects
 
 
 def _chosen(cells: Sequence[CellResult], levels: Mapping[str, str]) -> NDArray[np.bool_]:

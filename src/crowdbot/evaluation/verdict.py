@@ -175,10 +175,10 @@ def _missing_proof(cell: CellResult, requirements: Sequence[Requirement]) -> str
         verdict = requirement.judge(cell.values(requirement.statistic.metric))
         if not verdict.holds:
             return f"the requirement {requirement.text} does not hold ({verdict.sentence})"
-    bounds = [one for one in requirements if _is_on_persons(one)]
+    bounds = [requirement for requirement in requirements if _is_on_persons(requirement)]
     if not bounds:
         return "no requirement on the rate of contacts with persons is given, such as collision-rate<0.05@95%"
-    if all(one.confidence is None for one in bounds):
+    if all(bound.confidence is None for bound in bounds):
         return f"the requirement {bounds[0].text} has no confidence, such as {bounds[0].text}@95%"
     return ""
 
@@ -189,8 +189,12 @@ def _is_on_persons(requirement: Requirement) -> bool:
 
 
 def _proof(cell: CellResult, requirements: Sequence[Requirement]) -> str:
-    bounds = [one for one in requirements if _is_on_persons(one) and one.confidence is not None]
-    parts = [(one.text, one.judge(cell.values(one.statistic.metric)).sentence) for one in bounds]
+    bounds = [
+        requirement
+        for requirement in requirements
+        if _is_on_persons(requirement) and requirement.confidence is not None
+    ]
+    parts = [(bound.text, bound.judge(cell.values(bound.statistic.metric)).sentence) for bound in bounds]
     return " and ".join(f"{text} ({sentence})" for text, sentence in parts)
 
 
@@ -198,7 +202,9 @@ def _limit(runs: int, requirements: Sequence[Requirement]) -> str:
     """Return what this number of runs can show at most, and how many runs a bound needs."""
     if not runs:
         return "Without a valid run nothing can be shown."
-    rates = [one for one in requirements if _is_on_persons(one) and 0.0 < one.bound < 1.0]
+    rates = [
+        requirement for requirement in requirements if _is_on_persons(requirement) and 0.0 < requirement.bound < 1.0
+    ]
     bound, level = (rates[0].bound, rates[0].confidence or CONFIDENCE) if rates else (SMALL_RATE, CONFIDENCE)
     needed = runs_without_event(bound, level)
     most = -math.expm1(math.log1p(-level) / runs)

@@ -23,7 +23,7 @@ def participant_agent(trial: Trial) -> tuple[Avatar, int]:
     Raises:
         InputError: the trial has no such avatar, or no robot.
     """
-    chosen = [k for k, one in enumerate(trial.avatars) if one.source == "external"]
+    chosen = [k for k, avatar in enumerate(trial.avatars) if avatar.source == "external"]
     if not chosen or not trial.robots:
         raise InputError(
             f"trial {trial.name!r} has {len(chosen)} avatars with the source 'external' and {len(trial.robots)} "

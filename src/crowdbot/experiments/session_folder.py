@@ -34,7 +34,7 @@ def withdrawn(out: Path) -> tuple[int, ...]:
         return ()
     except (OSError, ValueError):
         numbers = None
-    if not isinstance(numbers, list) or not all(type(one) is int and one > 0 for one in numbers):
+    if not isinstance(numbers, list) or not all(type(number) is int and number > 0 for number in numbers):
         raise EpisodeError(f"{path} must be a list of the numbers of participants who have withdrawn")
     return tuple(numbers)
 

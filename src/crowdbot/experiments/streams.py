@@ -140,9 +140,9 @@ class StreamOutlets:
 
     def begin(self, trial: Trial) -> None:
         """Open the streams of poses for the robots and avatars of a trial; equal channels stay open."""
-        avatars = [one.name for one in trial.avatars]
+        avatars = [avatar.name for avatar in trial.avatars]
         self._heads = {name: k * len(HEAD) for k, name in enumerate(avatars)}
-        self._robots, self._touching = [one.name for one in trial.robots], frozenset()
+        self._robots, self._touching = [robot.name for robot in trial.robots], frozenset()
         self._open(HEADS_STREAM, avatars, HEAD)
         self._open(ROBOTS_STREAM, self._robots, ROBOT)
 
@@ -153,7 +153,7 @@ class StreamOutlets:
 
     def take(self, frame: StepRecord) -> None:
         """Send poses and contacts of a step."""
-        stamp, agents = self._lsl.local_clock(), {int(one): k for k, one in enumerate(frame.ids.tolist())}
+        stamp, agents = self._lsl.local_clock(), {int(item): k for k, item in enumerate(frame.ids.tolist())}
         names = {number: spec.name for number, spec in zip(frame.robot_ids, frame.robots, strict=True)}
         self._tell_contacts(frame, names)
         if frame.due and ROBOTS_STREAM in self._poses:
@@ -165,7 +165,9 @@ class StreamOutlets:
                     values[at : at + len(ROBOT)] = [*place, float(frame.scene.heading[0, k])]
             self._poses[ROBOTS_STREAM][1].push_sample(values, stamp)
         heads = {
-            one.avatar: one.head for one in frame.orders if isinstance(one, AvatarOrder) and one.avatar in self._heads
+            order.avatar: order.head
+            for order in frame.orders
+            if isinstance(order, AvatarOrder) and order.avatar in self._heads
         }
         if any(head is not None for head in heads.values()):
             values = [float("nan")] * (len(HEAD) * len(self._heads))
@@ -180,7 +182,7 @@ class StreamOutlets:
 
     def _tell_contacts(self, frame: StepRecord, names: Mapping[int, str]) -> None:
         """Send the contacts that begin in a step."""
-        now = frozenset((one.robot, one.other) for one in frame.touches)
+        now = frozenset((touche.robot, touche.other) for touche in frame.touches)
         for robot, other in sorted(now - self._touching):
             with_whom = names.get(other, "wall" if other < 0 else f"person {other}")
             time = frame.nanoseconds / 1e9
@@ -234,7 +236,7 @@ class StreamRecorder:
     def __init__(self, folder: Path, streams: Sequence[str], wait: float = 5.0) -> None:
         self._lsl, self._stop = load_pylsl(), threading.Event()
         self._error: CrowdbotError | None = None
-        found = [info for one in streams for info in self._resolve(one, wait)]
+        found = [info for stream in streams for info in self._resolve(stream, wait)]
         unique = {info.uid(): info for info in found}
         self._writers: list[_StreamWriter] = []
         try:
@@ -275,10 +277,10 @@ class StreamRecorder:
     def _resolve(self, text: str, wait: float) -> list[Any]:
         name, equals, value = text.partition("=")
         chosen = (name, value) if equals and name in PROPERTIES else ("name", text)
-        found: list[Any] = self._lsl.resolve_byprop(*chosen, 1, wait)
-        if not found:
+        result: list[Any] = self._lsl.resolve_byprop(*chosen, 1, wait)
+        if not result:
             raise InputError(f"there is no stream with the {chosen[0]} {chosen[1]!r} in the Lab Streaming Layer")
-        return found
+        return result
 
     def _run(self) -> None:
         try:
@@ -311,7 +313,7 @@ class _StreamWriter:
             whole = self._inlet.info(wait)
         except RuntimeError:  # base of the errors of pylsl
             raise InputError(f"the stream {info.name()!r} does not answer within {wait:g} s") from None
-        labels = [one or f"channel_{k}" for k, one in enumerate(_texts(whole.get_channel_labels(), info), 1)]
+        labels = [text or f"channel_{k}" for k, text in enumerate(_texts(whole.get_channel_labels(), info), 1)]
         head = {
             "name": info.name(),
             "type": info.type(),
@@ -354,7 +356,7 @@ class _StreamWriter:
 
 def _texts(given: list[str | None] | None, info: Any) -> list[str]:
     """Return a text for each channel, empty if the sender gives none."""
-    texts = [one or "" for one in given or []]
+    texts = [item or "" for item in given or []]
     return (texts + [""] * info.channel_count())[: info.channel_count()]
 
 

@@ -73,14 +73,14 @@ def falsify(
     search = sampling or CrossEntropy()
     parts = None if folder is None else folder / "parts"
     runner = SampleRunner(space, criterion, runs, parts, workers, cluster, progress)
-    found = search.search(runner, stream(seed, "falsify"))
+    match = search.search(runner, stream(seed, "falsify"))
     samples = tuple(runner.samples)
-    clusters = tuple(find_clusters(samples, found.weights))
+    clusters = tuple(find_clusters(samples, match.weights))
     chosen = select_failures(clusters, keep)
     kept = [
         FoundFailure(
             k,
-            next(n for n, one in enumerate(clusters, 1) if k in one.members),
+            next(n for n, cluster in enumerate(clusters, 1) if k in cluster.members),
             space.values(np.array(samples[k].point)),
         )
         for k in chosen
@@ -88,8 +88,8 @@ def falsify(
     if folder is not None:
         files = write_failures(space, samples, chosen, folder / "found")
         kept = [
-            dataclasses.replace(one, file=f"found/{file.path.name}", same=file.same)
-            for one, file in zip(kept, files, strict=True)
+            dataclasses.replace(item, file=f"found/{file.path.name}", same=file.same)
+            for item, file in zip(kept, files, strict=True)
         ]
     return FalsificationResult(
         space.trial.name,
@@ -99,9 +99,9 @@ def falsify(
         seed,
         space.factors,
         samples,
-        found.weights,
-        found.levels,
-        found.estimate,
+        match.weights,
+        match.levels,
+        match.estimate,
         clusters,
         tuple(kept),
         Path(space.trial.robots[0].type).name if space.trial.robots else "",

@@ -71,7 +71,7 @@ def find_clusters(samples: Sequence[Sample], weights: Floats) -> list[FailureClu
         labels = _labels(np.array([samples[k].point for k in own]).reshape(len(own), -1))
         for label in dict.fromkeys(labels.tolist()):
             found.append(
-                _cluster(samples, event, [k for k, one in zip(own, labels, strict=True) if one == label], mass)
+                _cluster(samples, event, [k for k, item in zip(own, labels, strict=True) if item == label], mass)
             )
     return sorted(found, key=lambda one: (-one.share, samples[one.worst].robustness, one.members))
 
@@ -188,22 +188,22 @@ class FalsificationResult:
     @property
     def errors(self) -> dict[str, int]:
         """Number of runs in which the navigator failed, by message."""
-        found: dict[str, int] = {}
+        result: dict[str, int] = {}
         for sample in self.samples:
             if sample.outcome == "error":
-                found[sample.message] = found.get(sample.message, 0) + 1
-        return found
+                result[sample.message] = result.get(sample.message, 0) + 1
+        return result
 
     def ranges(self, members: Sequence[int]) -> dict[str, tuple[Any, ...]]:
         """Return the smallest and the largest value of each factor among some runs; of a choice, all its values."""
-        found: dict[str, tuple[Any, ...]] = {}
+        result: dict[str, tuple[Any, ...]] = {}
         for d, factor in enumerate(self.factors):
             values = [factor.value_at(self.samples[k].point[d]) for k in members]
             if factor.kind == "choice":
-                found[factor.path] = tuple(sorted(set(map(str, values))))
+                result[factor.path] = tuple(sorted(set(map(str, values))))
             else:
-                found[factor.path] = (min(values), max(values))
-        return found
+                result[factor.path] = (min(values), max(values))
+        return result
 
     def table(self) -> dict[str, Any]:
         """Return the values of the result as JSON values, without the single runs."""
@@ -256,8 +256,14 @@ class FalsificationResult:
             InputError: the file cannot be written.
         """
         rows = [
-            [list(one.point), one.seed, one.outcome, one.robustness if np.isfinite(one.robustness) else None, weight]
-            for one, weight in zip(self.samples, self.weights.tolist(), strict=True)
+            [
+                list(sample.point),
+                sample.seed,
+                sample.outcome,
+                sample.robustness if np.isfinite(sample.robustness) else None,
+                weight,
+            ]
+            for sample, weight in zip(self.samples, self.weights.tolist(), strict=True)
         ]
         columns = ["point", "seed", "outcome", "robustness", "weight"]
         content = {"schema": SCHEMA, "provenance": _provenance(), **self.table(), "columns": columns, "samples": rows}
@@ -313,7 +319,7 @@ def write_failures(
     Raises:
         InputError: a file cannot be written.
     """
-    found = []
+    found_trials = []
     with explain_write_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for old in folder.glob("*.xml"):
@@ -324,8 +330,8 @@ def write_failures(
             variant = space.variant_of(sample.point)
             name = f"{variant.name[:60]}, failure {number}"
             write_trial_files(dataclasses.replace(variant, seed=sample.seed, name=name), path)
-            found.append(FoundTrial(path, k, _digest(path) == sample.digest))
-    return found
+            found_trials.append(FoundTrial(path, k, _digest(path) == sample.digest))
+    return found_trials
 
 
 def _digest(path: Path) -> str:

@@ -203,17 +203,17 @@ class SearchSpace:
             apply_values(self.trial, {factor.path: factor.value_at(z)}, place=f"factor {factor.path}", trust=self.trust)
             for z in PROBES
         ]
-        found = _differences(rows[0], rows[1])
-        if not factor.continuous or len(found) != 1:
+        differences = _differences(rows[0], rows[1])
+        if not factor.continuous or len(differences) != 1:
             return None
         try:
             same = all(
-                _replace(self.trial, _plant({}, found[0], factor.value_at(z))) == row
+                _replace(self.trial, _plant({}, differences[0], factor.value_at(z))) == row
                 for z, row in zip(PROBES, rows, strict=True)
             )
         except (InputError, TypeError):
             return None
-        return found[0] if same else None
+        return differences[0] if same else None
 
 
 def _differences(one: Any, two: Any, place: Chain = ()) -> list[Chain]:
@@ -239,5 +239,5 @@ def _replace(thing: Any, tree: Any) -> Any:
     if not isinstance(tree, dict):
         return tree
     if isinstance(thing, tuple):
-        return tuple(_replace(one, tree[k]) if k in tree else one for k, one in enumerate(thing))
+        return tuple(_replace(item, tree[k]) if k in tree else item for k, item in enumerate(thing))
     return dataclasses.replace(thing, **{name: _replace(getattr(thing, name), part) for name, part in tree.items()})

@@ -121,20 +121,20 @@ class GenerationPlan:
 
     def jobs(self, out: Path) -> list[ShardJob]:
         """Return the shards; they depend on the plan only."""
-        found = []
+        shard_jobs = []
         for name, variant in zip(self.names, self.variants, strict=True):
             count = self.seeds_per_shard(variant)
             for number, begin in enumerate(range(0, len(self.seeds), count)):
                 seeds = tuple(int(seed) for seed in self.seeds[begin : begin + count])
-                found.append(
+                shard_jobs.append(
                     ShardJob(
                         f"{_file_name(name)}-{number:06d}", name, trial_xml(variant), variant.folder, seeds, self.kind,
                         self.compressed, self.coco, out, self.trust, self.kitti,
                     )
                 )  # fmt: skip
-        if len(found) > MOST_SHARDS:
-            raise InputError(f"the data would have {len(found)} shards, at most {MOST_SHARDS} are allowed")
-        return found
+        if len(shard_jobs) > MOST_SHARDS:
+            raise InputError(f"the data would have {len(shard_jobs)} shards, at most {MOST_SHARDS} are allowed")
+        return shard_jobs
 
     def seeds_per_shard(self, variant: Trial) -> int:
         """Return how many runs of a variant a shard holds."""
@@ -252,8 +252,8 @@ _DENSITIES = tuple({"density": text} for text in ("0.1", "0.3", "0.6"))
 
 RECIPES: Mapping[str, Recipe] = MappingProxyType(
     {
-        one.name: one
-        for one in (
+        item.name: item
+        for item in (
             Recipe(
                 "flow",
                 "A robot goes with and against a flow of people at three densities, with a planar scanner.",

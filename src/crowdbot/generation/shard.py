@@ -138,7 +138,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return _plain(value.tolist())
     if isinstance(value, list):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
@@ -231,14 +231,14 @@ def _possible(trial: Trial, seeds: tuple[int, ...]) -> set[int]:
         raise
     except CrowdbotError:
         pass
-    found = set()
+    possible = set()
     for seed in seeds:
         try:
             Simulation(trial, seed)
         except CrowdbotError:
             continue
-        found.add(seed)
-    return found
+        possible.add(seed)
+    return possible
 
 
 def _record_episodes(job: ShardJob, trial: Trial) -> Shard:
@@ -260,12 +260,12 @@ def _record_episodes(job: ShardJob, trial: Trial) -> Shard:
 
 
 def _hashes(files: list[Path], folder: Path) -> dict[str, tuple[int, str]]:
-    found = {}
+    hashes = {}
     for file in files:
         with file.open("rb") as stream:
             digest = hashlib.file_digest(stream, "sha256").hexdigest()
-        found[file.relative_to(folder).as_posix()] = (file.stat().st_size, digest)
-    return found
+        hashes[file.relative_to(folder).as_posix()] = (file.stat().st_size, digest)
+    return hashes
 
 
 def _arrays(tables: Mapping[str, Table]) -> dict[str, str]:

@@ -33,17 +33,17 @@ def activity_index(
     ([0, 5], [2, 2])
     """
     if isinstance(activity, np.ndarray) and activity.dtype.kind in "iu":
-        found = activity.astype(np.int64)
+        result = activity.astype(np.int64)
     else:
         words = [activity] * count if isinstance(activity, str) else list(activity)
         for word in words:
             if word not in known:
                 raise UnknownName("activity", str(word), known)
-        found = np.array([list(known).index(word) for word in words], dtype=np.int64)
-    if found.shape != (count,):
-        raise InputError(f"{len(found)} activities are given for {count} people; give one, or one for each")
-    if np.any((found < 0) | (found >= len(known))):
+        result = np.array([list(known).index(word) for word in words], dtype=np.int64)
+    if result.shape != (count,):
+        raise InputError(f"{len(result)} activities are given for {count} people; give one, or one for each")
+    if np.any((result < 0) | (result >= len(known))):
         raise InputError(
-            f"activity index {found[(found < 0) | (found >= len(known))][0]} must be from 0 to {len(known) - 1}"
+            f"activity index {result[(result < 0) | (result >= len(known))][0]} must be from 0 to {len(known) - 1}"
         )
-    return found
+    return result

@@ -79,9 +79,9 @@ class BodyPose:
         what = _SEVEN if count == 7 else "3 numbers of the pelvis and a quaternion for each of 28 bones"
         if not isinstance(value, list | tuple | np.ndarray) or len(value) != count:
             raise InputError(f"BodyPose: {name} must be {count} numbers: {what}")
-        if not all(_is_number(one) for one in value):
+        if not all(_is_number(item) for item in value):
             raise InputError(f"BodyPose: {name} has a value that is not a finite number; it must be {what}")
-        numbers = tuple(float(one) for one in value)
+        numbers = tuple(float(item) for item in value)
         x, y, z = numbers[:3]
         if math.hypot(x - self.x, y - self.y) > REACH or not LOWEST <= z <= HIGHEST:
             raise InputError(
@@ -95,13 +95,13 @@ class BodyPose:
 
     def row(self) -> Floats:
         """Return the pose as ``[139]`` numbers, NaN for parts that are not given."""
-        found = np.full(ROW, np.nan)
-        found[:3] = self.x, self.y, self.heading
+        result = np.full(ROW, np.nan)
+        result[:3] = self.x, self.y, self.heading
         for name, (first, last) in PARTS.items():
             value = getattr(self, name)
             if value is not None:
-                found[first:last] = value
-        return found
+                result[first:last] = value
+        return result
 
     @classmethod
     def of_row(cls, row: Floats) -> BodyPose:
@@ -122,11 +122,11 @@ def _is_number(value: Any) -> bool:
 
 def shift_row(row: Floats, dx: float, dy: float) -> Floats:
     """Return the row of the same pose moved by dx, dy [m]."""
-    found = row.copy()
+    result = row.copy()
     for column in (0, 3, 10, 17, 24):
-        found[column] += dx
-        found[column + 1] += dy
-    return found
+        result[column] += dx
+        result[column + 1] += dy
+    return result
 
 
 def blend_rows(a: Floats, b: Floats, share: float) -> Floats:
@@ -137,17 +137,17 @@ def blend_rows(a: Floats, b: Floats, share: float) -> Floats:
     >>> blend_rows(BodyPose(0, 0, 3.0).row(), BodyPose(2, 4, -3.0).row(), 0.5)[:3].round(6).tolist()
     [1.0, 2.0, 3.141593]
     """
-    found = shift_row(a, share * (b[0] - a[0]), share * (b[1] - a[1]))
+    result = shift_row(a, share * (b[0] - a[0]), share * (b[1] - a[1]))
     turn = b[2] - a[2]
-    found[2] = a[2] + share * (turn - 2.0 * math.pi * math.floor((turn + math.pi) / (2.0 * math.pi)))
+    result[2] = a[2] + share * (turn - 2.0 * math.pi * math.floor((turn + math.pi) / (2.0 * math.pi)))
     for first, last in PARTS.values():
         if np.isnan(a[first]) or np.isnan(b[first]):
             continue
         place = slice(first, first + 3)
-        found[place] = a[place] + share * (b[place] - a[place])
+        result[place] = a[place] + share * (b[place] - a[place])
         turns = slice(first + 3, last)
-        found[turns] = slerp(a[turns].reshape(-1, 4), b[turns].reshape(-1, 4), share).ravel()
-    return found
+        result[turns] = slerp(a[turns].reshape(-1, 4), b[turns].reshape(-1, 4), share).ravel()
+    return result
 
 
 MAX_SPEED = 8.0
@@ -190,9 +190,11 @@ class PoseSource(ABC):
             InputError: :meth:`at` returns something else than a pose.
         """
         here, there = self.at(time), self.at(time + SPAN)
-        for one in (here, there):
-            if not isinstance(one, BodyPose):
-                raise InputError(f"{type(self).__name__}.at returned a {type(one).__name__}; it must return a BodyPose")
+        for item in (here, there):
+            if not isinstance(item, BodyPose):
+                raise InputError(
+                    f"{type(self).__name__}.at returned a {type(item).__name__}; it must return a BodyPose"
+                )
         vx, vy = (there.x - here.x) / SPAN, (there.y - here.y) / SPAN
         return PoseMotion(here.row(), vx, vy) if math.hypot(vx, vy) <= MAX_SPEED else PoseMotion(here.row(), 0.0, 0.0)
 
@@ -265,10 +267,10 @@ class PoseTrack(PoseSource):
     def motion(self, time: float) -> PoseMotion:
         """Return pose and velocity at a time [s]."""
         k = int(np.searchsorted(self.time, time + EARLY, side="right")) - 1
-        found = self._whole(time, k)
+        pose_motion = self._whole(time, k)
         if self.part_timeout <= 0.0 or k < 0:
-            return found
-        return found._replace(row=self._with_parts(found.row, time, k))
+            return pose_motion
+        return pose_motion._replace(row=self._with_parts(pose_motion.row, time, k))
 
     def _with_parts(self, row: Floats, time: float, k: int) -> Floats:
         """Return the row with the parts that have samples of their own before sample k + 1, at a time [s]."""
@@ -295,7 +297,7 @@ class PoseTrack(PoseSource):
         if k + 1 == len(self.time):
             late = max(0.0, time - float(self.time[k]))
             vx, vy = self._velocity(k - 1) if k > 0 else (0.0, 0.0)
-            row = shift_row(self.rows[k], *(min(late, self.extrapolation) * one for one in (vx, vy)))
+            row = shift_row(self.rows[k], *(min(late, self.extrapolation) * item for item in (vx, vy)))
             if self.turning and k > 0:
                 turn = float(self.rows[k, 2] - self.rows[k - 1, 2])
                 turn -= 2.0 * math.pi * math.floor((turn + math.pi) / (2.0 * math.pi))
@@ -406,9 +408,9 @@ def _csv_rows(text: str, name: str) -> Iterator[tuple[int, Any, dict[str, Any]]]
     if len(set(header)) < len(header):
         raise InputError(f"{name}:1: a column has the same name as another")
     for part in HANDS:
-        there = [f"{part}_{one}" in header for one in SEVEN]
+        there = [f"{part}_{item}" in header for item in SEVEN]
         if any(there) and not all(there):
-            raise InputError(f"{name}:1: {part} needs the columns {', '.join(f'{part}_{one}' for one in SEVEN)}")
+            raise InputError(f"{name}:1: {part} needs the columns {', '.join(f'{part}_{item}' for item in SEVEN)}")
     for line, cells in enumerate(rows[1:], 2):
         if not any(cell.strip() for cell in cells):
             continue
@@ -417,8 +419,8 @@ def _csv_rows(text: str, name: str) -> Iterator[tuple[int, Any, dict[str, Any]]]
         numbers = {key: _number(cell, f"{name}:{line}: {key}") for key, cell in zip(header, cells, strict=True)}
         values: dict[str, Any] = {key: numbers[key] for key in ("x", "y", "heading") if numbers.get(key) is not None}
         for part in HANDS:
-            seven = [numbers.get(f"{part}_{one}") for one in SEVEN]
-            if any(one is not None for one in seven):
+            seven = [numbers.get(f"{part}_{item}") for item in SEVEN]
+            if any(item is not None for item in seven):
                 values[part] = tuple(seven)
         _check_names(values, ("x", "y", "heading", *HANDS), f"{name}:{line}", ("x", "y"))
         yield line, numbers["time"], values

@@ -231,12 +231,12 @@ def _motion(lines: list[str], first: int, count: int, name: str) -> tuple[Floats
 
 def _numbers(words: list[str], count: int, where: str) -> list[float]:
     try:
-        found = [float(word) for word in words]
+        numbers = [float(word) for word in words]
     except ValueError:
         raise InputError(f"{where}: a value is not a number") from None
-    if len(found) != count or not all(math.isfinite(one) and abs(one) < 1e6 for one in found):
-        raise InputError(f"{where}: there are {len(found)} numbers, expected {count} finite ones below 1e6")
-    return found
+    if len(numbers) != count or not all(math.isfinite(one) and abs(one) < 1e6 for one in numbers):
+        raise InputError(f"{where}: there are {len(numbers)} numbers, expected {count} finite ones below 1e6")
+    return numbers
 
 
 def _world(joints: list[_Joint], values: Floats, rate: float) -> Bvh:
@@ -265,11 +265,11 @@ def _world(joints: list[_Joint], values: Floats, rate: float) -> Bvh:
 
 def _turns(axis: int, angle: Floats) -> Floats:
     """Return rotations ``[T, 3, 3]`` about an axis of the file by angles [rad]."""
-    found = np.tile(np.eye(3), (len(angle), 1, 1))
+    turns = np.tile(np.eye(3), (len(angle), 1, 1))
     a, b = (axis + 1) % 3, (axis + 2) % 3
-    found[:, a, a] = found[:, b, b] = np.cos(angle)
-    found[:, b, a], found[:, a, b] = np.sin(angle), -np.sin(angle)
-    return found
+    turns[:, a, a] = turns[:, b, b] = np.cos(angle)
+    turns[:, b, a], turns[:, a, b] = np.sin(angle), -np.sin(angle)
+    return turns
 
 
 WALKING = 0.3
@@ -319,11 +319,11 @@ def map_bones(names: tuple[str, ...]) -> dict[str, int]:
                 word = f"{side}|{word.removeprefix(mark)}"
                 break
         plain.setdefault(word.replace(" ", ""), k)
-    found = {}
+    result = {}
     for bone, words in MIDDLE.items():
         joint = next((plain[word] for word in words if word in plain), None)
         if joint is not None:
-            found[bone] = joint
+            result[bone] = joint
     for s in "lr":
         elbows = f"{s}|elbow" in plain  # there, the shoulder is the joint of the upper arm
         for bone, words in SIDED.items():
@@ -331,8 +331,8 @@ def map_bones(names: tuple[str, ...]) -> dict[str, int]:
             known = tuple(w for w in known if w != "shoulder") if elbows and bone == "clavicle" else known
             joint = next((plain[f"{s}|{word}"] for word in known if f"{s}|{word}" in plain), None)
             if joint is not None:
-                found[f"{bone}_{s}"] = joint
-    return found
+                result[f"{bone}_{s}"] = joint
+    return result
 
 
 def clip_of(motion: Bvh, name: str) -> Clip:

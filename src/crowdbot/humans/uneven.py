@@ -81,8 +81,8 @@ def stand_on_ground(posture: Posture, people: People, yaw: Floats, up: Floats) -
     [0.2, 0.2, 0.2, 0.2]
     """
     body = people.measures
-    found = Posture(posture.rotation.copy(), posture.position.copy())
+    result = Posture(posture.rotation.copy(), posture.position.copy())
     lengths = np.stack([body.thigh, body.shank], axis=1)
     parents, first = shapes().parents, np.array(LEGS, dtype=np.int64)
-    _raise_all(lengths, yaw, up, first, body.head, body.frame, parents, found.rotation, found.position)
-    return found
+    _raise_all(lengths, yaw, up, first, body.head, body.frame, parents, result.rotation, result.position)
+    return result

@@ -104,7 +104,7 @@ def unpack_arrays(fields: Iterable[Any]) -> dict[str, Any]:
     Raises:
         ValueError: an array does not match its description.
     """
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for field in fields:
         kind = np.dtype(field.dtype)
         shape = tuple(int(size) for size in field.shape)
@@ -114,12 +114,12 @@ def unpack_arrays(fields: Iterable[Any]) -> dict[str, Any]:
         if kind.kind == "f":
             flat = flat.astype(np.float64)
         many = len(flat) != 1 or math.prod(shape) == 1
-        found[field.name] = flat.reshape(shape) if many else np.broadcast_to(flat[0], shape)
-    for name in [name.removesuffix(".position") for name in found if name.endswith(".position")]:
-        place = found.pop(f"{name}.position")
-        turn, heading = found.pop(f"{name}.rotation", None), found.pop(f"{name}.heading", None)
-        found[name] = Pose(place, heading) if turn is None else SpatialPose(place, turn)
-    return found
+        result[field.name] = flat.reshape(shape) if many else np.broadcast_to(flat[0], shape)
+    for name in [name.removesuffix(".position") for name in result if name.endswith(".position")]:
+        place = result.pop(f"{name}.position")
+        turn, heading = result.pop(f"{name}.rotation", None), result.pop(f"{name}.heading", None)
+        result[name] = Pose(place, heading) if turn is None else SpatialPose(place, turn)
+    return result
 
 
 def mount_pose(robot: Any, mount: Any) -> SpatialPose:

@@ -63,13 +63,13 @@ class ContactTracker:
     def _events_of(self, person: int) -> list[ContactEvent]:
         _, radius, instants = self._near[person]
         events = contact_events(
-            np.array([one.time for one in instants]),
-            np.stack([one.position for one in instants]),
-            np.stack([one.velocity for one in instants]),
+            np.array([instant.time for instant in instants]),
+            np.stack([instant.position for instant in instants]),
+            np.stack([instant.velocity for instant in instants]),
             np.array([self.radius, radius]),
-            np.stack([one.ids >= 0 for one in instants]),
+            np.stack([instant.ids >= 0 for instant in instants]),
             0,
-            np.array([one.heading[0] for one in instants]),
+            np.array([instant.heading[0] for instant in instants]),
             self.outline,
         )
         return [dataclasses.replace(event, person=person) for event in events]

@@ -31,7 +31,7 @@ def earth_mover_distance(real: ArrayLike, drawn: ArrayLike) -> NDArray[np.float6
 
     one, other = _check(real, drawn)
     cost = path_distances(one, other)
-    found = np.zeros(cost.shape[:-2])
-    for index in np.ndindex(found.shape):
-        found[index] = cost[index][linear_sum_assignment(cost[index])].mean()
-    return found
+    result = np.zeros(cost.shape[:-2])
+    for index in np.ndindex(result.shape):
+        result[index] = cost[index][linear_sum_assignment(cost[index])].mean()
+    return result

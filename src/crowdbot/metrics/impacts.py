@@ -61,16 +61,16 @@ def impact_metrics(impacts: Iterable[Impact]) -> dict[str, float]:
     0.0
     """
     events = list(impacts)
-    severity = [0.0 if math.isnan(one.severity) else one.severity for one in events]
-    forces = [(one.peak_force, one.steady_force) for one in events]
+    severity = [0.0 if math.isnan(event.severity) else event.severity for event in events]
+    forces = [(event.peak_force, event.steady_force) for event in events]
     return {
         "impacts": float(len(events)),
-        "robot_caused_impacts": float(sum(one.cause == "first" for one in events)),
-        "person_caused_impacts": float(sum(one.cause == "second" for one in events)),
+        "robot_caused_impacts": float(sum(event.cause == "first" for event in events)),
+        "person_caused_impacts": float(sum(event.cause == "second" for event in events)),
         "severe_impacts": float(sum(value > 1.0 for value in severity)),
         "max_severity": max(severity, default=0.0),
         "peak_force": max((peak for peak, _ in forces if not math.isnan(peak)), default=0.0),
         "steady_force": max((steady for _, steady in forces), default=0.0),
-        "total_impulse": sum((one.impulse for one in events), 0.0),
-        "surface_impact_speed": max((one.impact_speed for one in events), default=0.0),
+        "total_impulse": sum((event.impulse for event in events), 0.0),
+        "surface_impact_speed": max((event.impact_speed for event in events), default=0.0),
     }

@@ -209,10 +209,10 @@ def _ratio(total: Floats, count: Floats) -> Floats:
 
 def _percentiles(means: Floats, count: Floats, level: float) -> list[Interval]:
     """Return the interval of each column; NaN for fewer than two people with values."""
-    found = [UNKNOWN] * means.shape[1]
+    intervals = [UNKNOWN] * means.shape[1]
     for column in np.flatnonzero(np.sum(count > 0.0, axis=0) > 1):
         known = means[:, column][~np.isnan(means[:, column])]
         if len(known) > 0:
             low, high = percentile_interval(known, level)
-            found[column] = float(low), float(high)
-    return found
+            intervals[column] = float(low), float(high)
+    return intervals

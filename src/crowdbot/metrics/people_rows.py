@@ -136,8 +136,8 @@ def _nearness(
 def _impacts(people: NDArray[np.int64], impacts: Iterable[PersonImpact] | None) -> Mapping[str, Floats]:
     force, severity = (np.full(len(people), math.nan if impacts is None else 0.0) for _ in range(2))
     rows = {person: k for k, person in enumerate(people.tolist())}
-    for one in impacts or ():
-        if one.person in rows:
-            row = rows[one.person]
-            force[row], severity[row] = np.fmax(force[row], one.peak_force), np.fmax(severity[row], one.severity)
+    for impact in impacts or ():
+        if impact.person in rows:
+            row = rows[impact.person]
+            force[row], severity[row] = np.fmax(force[row], impact.peak_force), np.fmax(severity[row], impact.severity)
     return {"peak_force": force, "max_severity": severity}

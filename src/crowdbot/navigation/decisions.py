@@ -23,15 +23,15 @@ def checked_joints(joints: Any, name: str) -> dict[str, float]:
     """
     if not isinstance(joints, Mapping):
         raise InputError(f"navigator {name} returned joints = {joints!r}; they must be a mapping of names to positions")
-    found: dict[str, float] = {}
+    result: dict[str, float] = {}
     for joint, position in joints.items():
         number = isinstance(position, int | float | np.floating | np.integer) and not isinstance(position, bool)
         if not isinstance(joint, str) or not number or not math.isfinite(position):
             raise InputError(
                 f"navigator {name} returned the target {position!r} for joint {joint!r}; it must be a finite number"
             )
-        found[joint] = float(position)
-    return found
+        result[joint] = float(position)
+    return result
 
 
 class Decisions(NamedTuple):

@@ -126,7 +126,7 @@ class ObservationBatch:
             _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, FLOAT))
         if len(self.tracks) not in (0, N):
             raise InputError(f"observations: {len(self.tracks)} tracks in {N} environments; give one for each, or none")
-        if not isinstance(self.tracks, TrackBatch) and len({one.length for one in self.tracks}) == 1:
+        if not isinstance(self.tracks, TrackBatch) and len({track.length for track in self.tracks}) == 1:
             object.__setattr__(self, "tracks", TrackBatch.of(self.tracks))
 
     @classmethod
@@ -263,7 +263,7 @@ class ObservationBatch:
         if not self.tracks:
             raise InputError("observation: forecast needs tracks, but they are None")
         known, step = choose_predictor(predictor, self.predictor, dt, self.predictor_step)
-        steps = [step if step or len(one.times) > 1 else self.dt for one in self.tracks]
+        steps = [step if step or len(track.times) > 1 else self.dt for track in self.tracks]
         return forecast_tracks(self.tracks, known, seconds, steps, self.walls, samples, seed)
 
 
@@ -354,7 +354,7 @@ def forecast_tracks(
     """
     if problem := forecast_problem(predictor, seconds):
         raise InputError(problem)
-    pasts = [one.windows(step, walls) for one, step in zip(tracks, steps, strict=True)]
+    pasts = [track.windows(step, walls) for track, step in zip(tracks, steps, strict=True)]
     dt, largest = pasts[0].dt, max(past.present.shape[2] for past in pasts)
     if any(abs(past.dt - dt) > SAME for past in pasts):
         raise InputError(f"forecast: the time steps differ, from {min(past.dt for past in pasts):g} s; give dt")

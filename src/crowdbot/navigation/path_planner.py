@@ -131,10 +131,10 @@ class PathPlanner:
         while not points or np.any(points[-1] != end):
             if len(points) == MOST_POINTS:
                 raise InputError(f"PathPlanner: the path has more than {MOST_POINTS} points")
-            found = self.next_waypoints(here[None], end[None], path)
-            for error in found.failures.values():
+            next_waypoints = self.next_waypoints(here[None], end[None], path)
+            for error in next_waypoints.failures.values():
                 raise error
-            here, path = found.point[0], found.path
+            here, path = next_waypoints.point[0], next_waypoints.path
             points.append(here)
         return np.array(points)
 
@@ -187,14 +187,16 @@ class PathPlanner:
     def _follow_each(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
         """Follow the paths one by one, since one of them fails, or some are narrow."""
         N = len(place)
-        found = Waypoints(np.full((N, 2), np.nan), np.full((N, COLUMNS), np.nan) if path is None else path.copy(), {})
+        waypoints = Waypoints(
+            np.full((N, 2), np.nan), np.full((N, COLUMNS), np.nan) if path is None else path.copy(), {}
+        )
         for k in range(N):
             try:
                 one = self._follow_one(place[k : k + 1], aim[k : k + 1], None if path is None else path[k : k + 1])
-                found.point[k], found.path[k] = one.point[0], one.path[0]
+                waypoints.point[k], waypoints.path[k] = one.point[0], one.path[0]
             except InputError as error:
-                found.failures[k] = InputError(f"PathPlanner: no path: {error}")
-        return found
+                waypoints.failures[k] = InputError(f"PathPlanner: no path: {error}")
+        return waypoints
 
     def _follow_one(self, place: Floats, aim: Floats, path: Floats | None) -> Waypoints:
         """Follow a path ``[1, ...]``: of the disc, or where it has none, of half of the width."""

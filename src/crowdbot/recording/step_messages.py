@@ -154,7 +154,7 @@ class StepMessages:
         if (latest := self._markers.index(frame.tick)) >= self._next_markers:
             self._next_markers = latest + 1
             if wants("/crowd/markers"):
-                goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in frame.robots]
+                goals = [(robot.goal.x, robot.goal.y, robot.goal.tolerance) for robot in frame.robots]
                 shapes = markers(now, scene, frame.ids, goals)
                 yield StepMessage("/crowd/markers", MARKER_KIND, now, make, shapes)
 
@@ -163,4 +163,7 @@ class StepMessages:
 
     def _touches(self, frame: StepRecord) -> list[tuple[str, str, float]]:
         names = self.names | {WALL: "wall"}
-        return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
+        return [
+            (names[touche.robot], names.get(touche.other, str(touche.other)), touche.clearance)
+            for touche in frame.touches
+        ]

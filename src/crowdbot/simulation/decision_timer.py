@@ -113,16 +113,16 @@ class DecisionTimer:
 
     def recorded_hangs(self, robot: RobotSpec, environments: Ints, ticks: Ints) -> dict[int, Exception]:
         """Return the errors of the replayed environments whose decision at their tick ``[N]`` did not return."""
-        found: dict[int, Exception] = {}
+        result: dict[int, Exception] = {}
         if not any(self.recorded):
-            return found
+            return result
         for e, tick in zip(environments.tolist(), ticks.tolist(), strict=True):
             recorded = self.recorded[e]
             order = None if recorded is None else recorded.hung.get(tick)
             if order is not None:
-                found[e] = HungNavigatorError(robot.navigator.title(robot.name), order.seconds, order.place)
+                result[e] = HungNavigatorError(robot.navigator.title(robot.name), order.seconds, order.place)
                 self.hung[e] = tick
-        return found
+        return result
 
     def orders(
         self, robot: RobotSpec, ticks: Ints, failures: Sequence[RunFailure | None]
@@ -136,7 +136,7 @@ class DecisionTimer:
             ticks: ``[E]`` current ticks.
             failures: failure of each environment.
         """
-        found: list[tuple[int, DecisionOrder]] = [
+        result: list[tuple[int, DecisionOrder]] = [
             (e, MissedDecisionOrder(robot=robot.name)) for e in np.flatnonzero(self.missed == ticks).tolist()
         ]
         for e in np.flatnonzero(self.hung == ticks).tolist():
@@ -144,8 +144,8 @@ class DecisionTimer:
             known = None if recorded is None else recorded.hung.get(int(ticks[e]))
             seconds = robot.decision_limit if known is None else known.seconds
             place = "" if failure is None else failure.place
-            found.append((e, HungDecisionOrder(robot=robot.name, seconds=seconds, place=place)))
-        return found
+            result.append((e, HungDecisionOrder(robot=robot.name, seconds=seconds, place=place)))
+        return result
 
     def replay(self, environment: int, recorded: RecordedDecisions | None) -> None:
         """Let the decisions of an environment be missed and hang as recorded; None: measure again."""
@@ -168,7 +168,7 @@ def decision_times(controls: Iterable[Any], environment: int = 0) -> dict[str, t
         controls: the robots, each with its ``timer``.
         environment: index of the environment.
     """
-    found = {one.robot.name: tuple(one.timer.spent[environment]) for one in controls}
+    found = {control.robot.name: tuple(control.timer.spent[environment]) for control in controls}
     return {name: times for name, times in found.items() if times}
 
 

@@ -135,11 +135,15 @@ class Episode:
         ([0], [0.0])
         """
         specs = self.trial.robots
-        robots = [TableRobot(k, one.name, one.ghost) for k, one in zip(self.robots, specs, strict=True)]
+        robots = [TableRobot(k, spec.name, spec.ghost) for k, spec in zip(self.robots, specs, strict=True)]
         impacts = None
         if self.trial.world == "physics":
-            hits = [one for one in self.collisions if (one.first.kind, one.second.kind) == ("robot", "person")]
-            impacts = [PersonImpact(one.second.number, one.peak_force, one.severity) for one in hits]
+            hits = [
+                collision
+                for collision in self.collisions
+                if (collision.first.kind, collision.second.kind) == ("robot", "person")
+            ]
+            impacts = [PersonImpact(hit.second.number, hit.peak_force, hit.severity) for hit in hits]
         return people_table(log_of(self), robots, impacts)
 
     @property

@@ -111,7 +111,7 @@ class EpisodeLog(EpisodeStatistics):
         touched = np.array([travel.robot in frame.touching for frame in frames])
         goals = [frame.goals[frame.robots.index(travel.robot)] for frame in frames]
         name = self.trial.robots[self.robot_ids.index(travel.robot)].name
-        orders = [(at, one) for at, one in self.orders if isinstance(one, GoalOrder) and one.robot == name]
+        orders = [(at, item) for at, item in self.orders if isinstance(item, GoalOrder) and item.robot == name]
         if not orders and np.all(np.array(goals) == travel.goal):
             travel.update_log(log, touched)
             return
@@ -183,7 +183,7 @@ class EpisodeLog(EpisodeStatistics):
         if not (touches or forces or collisions or orders):
             return
         time = nanoseconds / 1e9
-        self._touching |= {who for one in touches for who in (one.robot, one.other)}
+        self._touching |= {who for touche in touches for who in (touche.robot, touche.other)}
         self.orders += [(tick, order) for order in orders]
         self.contacts += [(time, contact) for contact in touches]
         self.forces += [(time, force) for force in forces]
@@ -205,14 +205,14 @@ class EpisodeLog(EpisodeStatistics):
     def _arrays(self) -> dict[str, NDArray[Any]]:
         """Return times ``[T]`` [s] and the arrays of the scenes ``[T, A, ...]`` with one column for each id."""
         frames, agents = self._frames, self.agents
-        found: dict[str, NDArray[Any]] = {"times": np.array([frame.nanoseconds / 1e9 for frame in frames])}
+        arrays: dict[str, NDArray[Any]] = {"times": np.array([frame.nanoseconds / 1e9 for frame in frames])}
         same = all(len(frame.ids) == agents for frame in frames)
         ids = np.stack([frame.ids for frame in frames]) if same else np.zeros((1, 0), dtype=np.int64)
         same = same and bool(np.all(ids == np.arange(agents)))
         for name in _Frame._fields[2:7]:
             rows: list[NDArray[Any]] = [getattr(frame, name) for frame in frames]
-            found[name] = np.stack(rows) if same else _by_person(rows, [frame.ids for frame in frames], agents)
-        return found
+            arrays[name] = np.stack(rows) if same else _by_person(rows, [frame.ids for frame in frames], agents)
+        return arrays
 
 
 class EpisodeLogs:

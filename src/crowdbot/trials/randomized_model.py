@@ -57,7 +57,7 @@ class RandomizedModel(CrowdModel):
         for name, drawn in draws.items():
             word = name.replace("_", "-")
             if name not in known:
-                words = [one.replace("_", "-") for one in known]
+                words = [item.replace("_", "-") for item in known]
                 choices = f"available parameters: {', '.join(words) or 'none'}"
                 yield f"{word} cannot be drawn{did_you_mean(word, words)}; {choices}"
                 continue

@@ -528,10 +528,10 @@ class VrDesk(Desk):
         """
         with self._lock:
             person = self._participant(avatar)
-            found = [item for item in person.history(TOUCH) if getattr(item, side, None) is not None]
-            if side not in ("left", "right") or not found:
+            items = [item for item in person.history(TOUCH) if getattr(item, side, None) is not None]
+            if side not in ("left", "right") or not items:
                 raise InputError(f"the {side} controller or hand of {avatar!r} is not tracked")
-            rows = [getattr(one, side)[:3].tolist() for one in found]
+            rows = [getattr(one, side)[:3].tolist() for one in items]
             source = [statistics.median(row[k] for row in rows) for k in range(3)]
             self.rooms.add_pair(person.room, source, [x, y, z])
             self._tell_state()

@@ -60,9 +60,9 @@ class AvatarContacts:
         """
         result = self._forces(simulation) or self._overlaps(simulation)
         self._velocity = simulation.world.environment_scene(0).velocity[0].copy()
-        keys = {(one["kind"], one["number"], one["limb"]) for one in result}
-        for one in result:
-            one["begins"] = (one["kind"], one["number"], one["limb"]) not in self._held
+        keys = {(item["kind"], item["number"], item["limb"]) for item in result}
+        for item in result:
+            item["begins"] = (item["kind"], item["number"], item["limb"]) not in self._held
         self._held = keys
         return result
 

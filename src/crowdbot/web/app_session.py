@@ -91,8 +91,8 @@ class AppSession:
     async def resource(self, name: str, path: str, query: dict[str, str]) -> Resource:
         """Return a file of a desk; raises KeyError if there is none."""
         desk = self.desk(name)
-        found: Resource = await asyncio.wrap_future(self._threads[name].call(desk.resource, path, query))
-        return found
+        result: Resource = await asyncio.wrap_future(self._threads[name].call(desk.resource, path, query))
+        return result
 
     @property
     def idle(self) -> float:

@@ -38,7 +38,7 @@ class DraftFile:
     def load(self) -> dict[str, Any]:
         """Return the state, empty if there is none or it is damaged."""
         try:
-            found = json.loads(self._path.read_text(encoding="utf-8"))
+            loads = json.loads(self._path.read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return {}
-        return found if isinstance(found, dict) else {}
+        return loads if isinstance(loads, dict) else {}

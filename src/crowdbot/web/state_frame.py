@@ -102,7 +102,7 @@ def _code(name: str, array: NDArray[Any]) -> int:
     if code is None:
         raise InputError(
             f"array {name} in a state frame has type {array.dtype} and shape {array.shape}: expected one or two "
-            "axes of " + ", ".join(one.name for one in TYPES)
+            "axes of " + ", ".join(item.name for item in TYPES)
         )
     return code
 

@@ -115,7 +115,7 @@ class Window:
         return True
 
     def _choose(self, wants: Any) -> bool:
-        if not isinstance(wants, list) or len(wants) > CHANNELS or not all(isinstance(one, str) for one in wants):
+        if not isinstance(wants, list) or len(wants) > CHANNELS or not all(isinstance(want, str) for want in wants):
             return False
         self._wants = frozenset(wants)
         self._frames = {name: frame for name, frame in self._frames.items() if name in self._wants}

@@ -58,7 +58,7 @@ def robot_environments(world: Any, agent: int, environments: Sequence[int] | Non
         environments = np.flatnonzero(active[:, agent]).tolist()
     chosen = chosen_environments(len(active), environments)
     if agent not in robots or not chosen or not active[chosen, agent].all():
-        present = [one for one in robots if active[chosen or slice(None), one].all()]
+        present = [robot for robot in robots if active[chosen or slice(None), robot].all()]
         raise InputError(f"agent {agent} is not a robot that is present; present are {present or 'none'}")
     return chosen
 
@@ -136,11 +136,11 @@ def match_robots(world: Any, other: Any) -> None:
     Raises:
         InputError: a person has the place of such a robot.
     """
-    for one, two in ((world, other), (other, world)):
-        for agent in sorted(one.added_robots - two.added_robots):
+    for item, two in ((world, other), (other, world)):
+        for agent in sorted(item.added_robots - two.added_robots):
             if agent < two.scene.shape[1] and two.scene.active[:, agent].any():
                 raise InputError(f"agent {agent} is a robot in one environment and a person in another")
-            absent_robot(two, agent, one.drives[agent], one.latency.get(agent, 0.0), one.outlines.get(agent))
+            absent_robot(two, agent, item.drives[agent], item.latency.get(agent, 0.0), item.outlines.get(agent))
 
 
 def keep_added_robots(world: Any, how: dict[str, Any]) -> dict[str, Any]:
@@ -164,7 +164,7 @@ def prop_number(names: Sequence[str], name: str) -> int:
         InputError: there is no prop of this name.
     """
     if not name or name not in names:
-        known = [one for one in names if one]
+        known = [name for name in names if name]
         meant = did_you_mean(name, known)
         raise InputError(f"there is no prop {name!r}{meant}; props are {', '.join(known) or 'none'}")
     return list(names).index(name)
@@ -177,7 +177,7 @@ def new_prop_name(names: Sequence[str], name: str) -> str:
         InputError: the name is taken.
     """
     numbers = (f"prop{k}" for k in itertools.count(len(names)))
-    name = name or next(one for one in numbers if one not in names)
+    name = name or next(number for number in numbers if number not in names)
     if name in names:
         raise InputError(f"there is already a prop {name!r}; names of props must differ")
     return name
@@ -204,8 +204,8 @@ def props_of(world: Any) -> tuple[list[str], list[Any]]:
     if not hasattr(world, "_prop_outlines"):
         props = world._bodies[0].stage.props if world._bodies else ()
         world._prop_outlines = ([f"prop{k}" for k in range(len(props))], [prop_outline(prop) for prop in props])
-    found: tuple[list[str], list[Any]] = world._prop_outlines
-    return found
+    result: tuple[list[str], list[Any]] = world._prop_outlines
+    return result
 
 
 def replace_walls(world: Any, walls: Walls) -> None:

@@ -42,13 +42,13 @@ def push_memory(
         mass: mass of the person [kg].
         height: stature [m].
     """
-    found = np.zeros((*shape, 9)) if memory is None else memory.copy()
-    row = found[environment, slot]
+    result = np.zeros((*shape, 9)) if memory is None else memory.copy()
+    row = result[environment, slot]
     if row[WHO] != person + 1:
         row[:] = 0.0
     row[FORCE], row[LEFT], row[SINCE] = force / mass, duration, 0.0
     row[WHO], row[MASS], row[CENTER_HEIGHT] = person + 1, mass, CENTER * height
-    return found
+    return result
 
 
 def acting_pushes(scene: Scene, ids: Ints, environment: int = 0) -> Ints:

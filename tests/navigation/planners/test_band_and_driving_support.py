@@ -51,7 +51,7 @@ def test_a_batch_decides_as_each_run_alone(kind):
     name = {RDSNavigator: "rds", TimeElasticBandNavigator: "time-elastic-band"}[kind]
     trial = parse_methods(name)[0].put_into(load_trial("crowdnav-circle-5", limit=6.0))
     together = simulate_seeds(trial, range(3))
-    assert [one.digest for one in together] == [simulate(trial, seed).digest for seed in range(3)]
+    assert [item.digest for item in together] == [simulate(trial, seed).digest for seed in range(3)]
 
 
 def test_a_long_robot_does_not_turn_its_rear_into_a_person():

@@ -109,7 +109,7 @@ def test_wrong_values_are_explained(values, message):
 
 def test_runs_are_equal_in_batches_alone_replayed_and_branched(tmp_path):
     trial = parse_methods("predicted-occupancy")[0].put_into(load_trial("frontal", duration=2.0))
-    together = [one.digest for one in simulate_seeds(trial, range(2))]
+    together = [seed.digest for seed in simulate_seeds(trial, range(2))]
     first = record(trial, 0, out=tmp_path / "first")
     assert together == [first.digest, simulate(trial, 1).digest]
     assert replay(tmp_path / "first" / "episode.mcap").equal
@@ -119,5 +119,5 @@ def test_runs_are_equal_in_batches_alone_replayed_and_branched(tmp_path):
 def test_a_robot_with_scans_only_passes_a_person():
     trial = parse_methods("predicted-occupancy")[0].put_into(load_trial("frontal"))
     runs = list(simulate_seeds(trial, range(3)))
-    assert [one.outcome for one in runs] == ["success"] * 3
-    assert min(one.metrics["min_clearance"] for one in runs) > 0.05
+    assert [run.outcome for run in runs] == ["success"] * 3
+    assert min(run.metrics["min_clearance"] for run in runs) > 0.05

@@ -116,7 +116,7 @@ def test_an_external_robot_has_no_layer():
 def test_runs_are_equal_in_batches_and_alone(name):
     trial = parse_methods(f"{name}+safety")[0].put_into(load_trial("circle-crossing", duration=4.0))
     together = simulate_seeds(trial, range(3))
-    assert [one.digest for one in together] == [simulate(trial, seed).digest for seed in range(3)]
+    assert [item.digest for item in together] == [simulate(trial, seed).digest for seed in range(3)]
 
 
 def test_a_recording_replays_and_branches(tmp_path):

@@ -39,8 +39,8 @@ def occupied(memory, navigator):
 
 def after(navigator, observations):
     memory = navigator.begin(observations[0])
-    for one in observations:
-        action, memory = navigator.act(one, memory)
+    for observation in observations:
+        action, memory = navigator.act(observation, memory)
     return action, memory
 
 
@@ -106,7 +106,7 @@ def test_wrong_values_are_explained(values, message):
 
 def test_runs_are_equal_in_batches_alone_replayed_and_branched(tmp_path):
     trial = parse_methods("scan-map")[0].put_into(load_trial("frontal", duration=2.5))
-    together = [one.digest for one in simulate_seeds(trial, range(2))]
+    together = [seed.digest for seed in simulate_seeds(trial, range(2))]
     first = record(trial, 0, out=tmp_path / "first")
     assert together == [first.digest, simulate(trial, 1).digest]
     assert replay(tmp_path / "first" / "episode.mcap").equal
@@ -116,5 +116,5 @@ def test_runs_are_equal_in_batches_alone_replayed_and_branched(tmp_path):
 def test_a_robot_without_tracker_passes_a_person():
     trial = parse_methods("scan-map")[0].put_into(load_trial("frontal"))
     runs = list(simulate_seeds(trial, range(4)))
-    assert [one.outcome for one in runs].count("success") >= 3
-    assert math.isfinite(sum(one.metrics["min_clearance"] for one in runs))
+    assert [run.outcome for run in runs].count("success") >= 3
+    assert math.isfinite(sum(run.metrics["min_clearance"] for run in runs))

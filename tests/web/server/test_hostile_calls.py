@@ -40,7 +40,7 @@ def value(rng, hint):
         return None
     if kind is bool:
         return rng.random() < 0.5
-    return rng.choice(NUMBERS.get(kind) or [one for one in NASTY if isinstance(one, kind)])
+    return rng.choice(NUMBERS.get(kind) or [item for item in NASTY if isinstance(item, kind)])
 
 
 def attack(session, name):
@@ -69,7 +69,7 @@ def test_hostile_values_are_told_and_nothing_is_written_outside(session, tmp_pat
     bugs, sentences = attack(session, name)
     assert bugs == []
     assert sentences > 100
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["files", "secret.xml"]
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["files", "secret.xml"]
     assert (tmp_path / "secret.xml").read_text() == "<trial/>"
 
 

@@ -70,7 +70,7 @@ async def attack(url, count, seed):
 
 def check(serve, folder, count, caplog, capfd):
     """Attack a server and check what is left of it."""
-    before = {one: one.stat().st_mtime_ns for one in folder.parent.iterdir()}
+    before = {item: item.stat().st_mtime_ns for item in folder.parent.iterdir()}
     with serve(folder, DESKS[1:]) as server, caplog.at_level(logging.WARNING):
         bugs, answers, memory = asyncio.run(attack(server.url, count, 7))
         end = time.monotonic() + 180
@@ -82,10 +82,10 @@ def check(serve, folder, count, caplog, capfd):
     assert answers > 0
     begin = max(memory[: len(memory) // 3])
     assert memory[-1] - begin < 60.0, (begin, memory[-1])
-    assert [one for one in caplog.records if one.levelno >= logging.ERROR] == []
+    assert [record for record in caplog.records if record.levelno >= logging.ERROR] == []
     assert "Traceback" not in capfd.readouterr().err
-    assert {one: one.stat().st_mtime_ns for one in folder.parent.iterdir() if one != folder} == {
-        one: when for one, when in before.items() if one != folder
+    assert {item: item.stat().st_mtime_ns for item in folder.parent.iterdir() if item != folder} == {
+        item: when for item, when in before.items() if item != folder
     }  # nothing is written elsewhere
 
 

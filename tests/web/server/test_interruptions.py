@@ -68,7 +68,7 @@ def test_a_killed_server_comes_back_with_the_jobs_and_the_text_stays(window, tmp
         page.get_by_label("Seeds").fill("0:100000")
         page.get_by_role("form").get_by_role("button", name="Start").click()
         page.locator(".job.running").wait_for()
-        workers = [one for one in children(process.pid) if alive(one)]
+        workers = [child for child in children(process.pid) if alive(child)]
         assert workers
         page.get_by_role("tab", name="Editor").click()
         page.wait_for_function("() => document.querySelector('.editor textarea').value.includes('new-trial')")
@@ -76,7 +76,7 @@ def test_a_killed_server_comes_back_with_the_jobs_and_the_text_stays(window, tmp
         page.locator(".connection.lost").wait_for()
         page.get_by_label("XML of the trial").fill(text_of(page).replace("<stage/>", '<stage map="mine"/>'))
         end = time.monotonic() + START
-        while any(alive(one) for one in workers):  # no orphan goes on
+        while any(alive(worker) for worker in workers):  # no orphan goes on
             if time.monotonic() > end:
                 raise TimeoutError
             time.sleep(0.1)
@@ -110,15 +110,15 @@ def test_two_windows_that_edit_the_same_trial_lose_nothing_silently(page, app, b
     other = browser.new_page()
     other.goto(app.url + "#tab=editor")
     page.get_by_role("tab", name="Editor").click()
-    for one in (page, other):
-        one.wait_for_function("() => document.querySelector('.editor textarea').value.includes('new-trial')")
+    for item in (page, other):
+        item.wait_for_function("() => document.querySelector('.editor textarea').value.includes('new-trial')")
     insert = """(xml) =>
       crowdbot.connection.call('editor.insert', {path: [0], xml, revision: 0}).then(() => '', (error) => error.message)
     """
-    answers = [one.evaluate(insert, f'<wall points="0,{i} 4,{i}"/>') for i, one in enumerate((page, other))]
+    answers = [item.evaluate(insert, f'<wall points="0,{i} 4,{i}"/>') for i, item in enumerate((page, other))]
     assert answers == ["", "the trial was changed in another window or by a later edit; it is shown as it is now"]
-    for one in (page, other):
-        one.wait_for_function("() => document.querySelector('.editor textarea').value.includes('<wall')")
+    for item in (page, other):
+        item.wait_for_function("() => document.querySelector('.editor textarea').value.includes('<wall')")
     assert text_of(page) == text_of(other)
     assert len(parse_trial(text_of(page)).stage.walls) == 1
     other.close()

@@ -32,7 +32,7 @@ STILL_SHOWN = """(i) => {
 
 
 @pytest.mark.parametrize(
-    "tab", ["prediction", "jobs", *(pytest.param(one, marks=pytest.mark.sweep) for one in TABS[1:4])]
+    "tab", ["prediction", "jobs", *(pytest.param(item, marks=pytest.mark.sweep) for item in TABS[1:4])]
 )
 def test_every_control_is_reached_with_the_tab_key_and_shows_it(page, tab):
     show(page, tab)
@@ -60,7 +60,7 @@ def test_every_control_is_reached_with_the_tab_key_and_shows_it(page, tab):
         if len(reached - {None}) == count:
             break
     missed = [page.evaluate(STILL_SHOWN, i) for i in range(count) if str(i) not in reached]
-    assert [one for one in missed if one is not None] == []
+    assert [item for item in missed if item is not None] == []
     assert without == []
 
 
@@ -152,7 +152,7 @@ def test_a_link_shows_the_same_view_of_the_simulator(page, browser, app, view, e
     page.evaluate(f"(eye) => {SCENE}.setViewpoint(eye)", eye)
     page.locator("canvas.stage").dispatch_event("pointerup")
     page.wait_for_function(
-        f"() => new URLSearchParams(location.hash.slice(1)).get('eye') === '{','.join(f'{one:g}' for one in eye)}'"
+        f"() => new URLSearchParams(location.hash.slice(1)).get('eye') === '{','.join(f'{item:g}' for item in eye)}'"
     )
     other = browser.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     other.set_default_timeout(180_000)

@@ -66,9 +66,9 @@ def test_thirty_students_share_a_server(tmp_path):
 
     async def talk(server, client):
         found = await asyncio.gather(*(student(server, client, number) for number in range(30)))
-        while any(one.jobs.active for one in server.sessions.values()):
+        while any(session.jobs.active for session in server.sessions.values()):
             await asyncio.sleep(0.05)
-        return found, [one.jobs.records[0].state for one in server.sessions.values()]
+        return found, [session.jobs.records[0].state for session in server.sessions.values()]
 
     limits = SessionLimits(jobs=1, upload=2000.0)
     found, states = serve(tmp_path, talk, limits=limits, most_sessions=30)
@@ -93,7 +93,7 @@ def test_each_limit_is_refused_with_a_sentence(tmp_path):
 
     limits = SessionLimits(jobs=1, waiting=1, windows=1, disk=8000.0)
     answers, texts = serve(tmp_path, talk, limits=limits, most_sessions=1)
-    assert [one.get("result") for one in answers] == [1, 2, None]
+    assert [answer.get("result") for answer in answers] == [1, 2, None]
     assert answers[2]["error"] == "1 jobs are waiting, the limit of a session; wait, or cancel one of them"
     assert texts[0] == (503, "session one has 1 windows, its limit; close one of them\n")
     assert texts[1] == (503, "1 sessions are open, the limit of this server; try again later\n")

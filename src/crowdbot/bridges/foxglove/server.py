@@ -121,7 +121,7 @@ class FoxgloveServer:
         wanted = frozenset() if self._graph is None else self._graph.wanted
         if not topic.endswith("/"):
             return topic in wanted or topic == "/clock"
-        return any(one == topic[:-1] or one.startswith(topic) for one in wanted)
+        return any(item == topic[:-1] or item.startswith(topic) for item in wanted)
 
     def stop(self) -> None:
         """Disconnect all clients and stop listening."""
@@ -149,7 +149,9 @@ def foxglove_layout(trial: Trial) -> dict[str, Any]:
     ['3D!scene', 'Plot!speed', 'Teleop!drive']
     """
     interface, robot = RobotInterface.of(trial), trial.robots[0].name
-    images = [one.name for one in interface.outputs if one.robot == robot and one.kind == "sensor_msgs/msg/Image"]
+    images = [
+        output.name for output in interface.outputs if output.robot == robot and output.kind == "sensor_msgs/msg/Image"
+    ]
     panels: dict[str, Any] = {
         "3D!scene": _scene(interface, robot),
         "Plot!speed": _plot(robot),
@@ -170,7 +172,7 @@ def foxglove_layout(trial: Trial) -> dict[str, Any]:
 
 def _scene(interface: RobotInterface, robot: str) -> dict[str, Any]:
     shown = {"sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/OccupancyGrid"}
-    topics = {one.name: {"visible": True} for one in interface.outputs if one.kind in shown}
+    topics = {output.name: {"visible": True} for output in interface.outputs if output.kind in shown}
     return {
         "cameraState": {
             "perspective": True, "distance": 14.0, "phi": 50.0, "thetaOffset": 45.0, "targetOffset": [0, 0, 0],

@@ -141,12 +141,12 @@ class CommandGuard:
     def next_command(self, now: float) -> Twist:
         """Return the velocity that may leave now."""
         step = 0.0 if self._sent_time is None else max(0.0, now - self._sent_time)
-        found = Twist() if self.reason else self._limited(now, step)
-        if not self.reason and (problem := self._danger(now, found)):
+        twist = Twist() if self.reason else self._limited(now, step)
+        if not self.reason and (problem := self._danger(now, twist)):
             self.stop(problem)
-            found = Twist()
-        self._sent, self._sent_time = found, now
-        return found
+            twist = Twist()
+        self._sent, self._sent_time = twist, now
+        return twist
 
     def _limited(self, now: float, step: float) -> Twist:
         limits = self.limits

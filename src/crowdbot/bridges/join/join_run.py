@@ -314,9 +314,9 @@ class _Watch:
     def orders(self, simulation: Any) -> list[Order]:
         """Return the orders of the source."""
         result = list(self.source.orders(simulation))
-        for one in result:
-            if isinstance(one, RobotPoseOrder) and one.robot == self.port.robot.name:
-                self.port.note_pose(one.x, one.y, one.heading)
+        for item in result:
+            if isinstance(item, RobotPoseOrder) and item.robot == self.port.robot.name:
+                self.port.note_pose(item.x, item.y, item.heading)
         return result
 
 

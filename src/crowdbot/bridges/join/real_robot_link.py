@@ -62,13 +62,13 @@ class RealRobotLink:
         self._begun = False
         self._capture: OrderSource | None = None
         self._simulation: Simulation | None = None
-        spec = next(one for one in simulation.trial.robots if one.name == robot)
+        spec = next(item for item in simulation.trial.robots if item.name == robot)
         limits = GuardLimits(
             navigator.max_speed, navigator.max_turn, navigator.max_acceleration, navigator.max_turn_acceleration,
             navigator.link_timeout, navigator.timeout,
         )  # fmt: skip
         area = DrivingArea.of(navigator.area) if navigator.area else EVERYWHERE
-        opened = [open_transport(one) for one in navigator.bridge.split()] if transports is None else transports
+        opened = [open_transport(item) for item in navigator.bridge.split()] if transports is None else transports
         self.port = JoinPort(
             simulation.trial, opened, spec, CommandGuard(area, limits), navigator.odometry, navigator.command,
             self.remarks.append,
@@ -126,14 +126,14 @@ class RealRobotLink:
 
     def _velocities(self, simulation: Simulation) -> list[Order]:
         """Return the velocity that the robot tells; 0 while it is stopped here."""
-        for one in self.port.transports:
-            one.poll()
-        found = [one for one in self.port.inbox.take_orders() if isinstance(one, VelocityOrder)]
+        for transport in self.port.transports:
+            transport.poll()
+        found = [order for order in self.port.inbox.take_orders() if isinstance(order, VelocityOrder)]
         return [one for one in found if one.robot == self.robot]
 
     def _decide(self, simulation: Simulation) -> None:
         """Let the driver decide at its control period."""
-        control = next((one for one in simulation.robots if one.robot.name == self.robot), None)
+        control = next((robot for robot in simulation.robots if robot.robot.name == self.robot), None)
         if self._driver is None or control is None:
             return
         due = simulation.world.clock.schedule(control.robot.control_period).is_due(simulation.ticks)
@@ -151,8 +151,8 @@ class RealRobotLink:
         """Let commands leave while no steps are taken, and hear the robot."""
         while not self._ended.wait(PERIOD):
             with self._lock, contextlib.suppress(InputError):
-                for one in self.port.transports:
-                    one.poll()
+                for transport in self.port.transports:
+                    transport.poll()
                 if self.navigator.odometry and not self._ended.is_set():
                     self._track()
                     self.port.send_command(0)
@@ -166,9 +166,9 @@ class RealRobotLink:
         """Take the newest pose of motion capture, also while the run is paused."""
         if self._capture is None or self._simulation is None:
             return
-        for one in self._capture.orders(self._simulation):
-            if isinstance(one, RobotPoseOrder) and one.robot == self.robot:
-                self.port.note_pose(one.x, one.y, one.heading)
+        for order in self._capture.orders(self._simulation):
+            if isinstance(order, RobotPoseOrder) and order.robot == self.robot:
+                self.port.note_pose(order.x, order.y, order.heading)
 
     def hold(self, stop: bool, reason: str) -> str:
         """Stop the robot at once, or release it; return why it is not released."""
@@ -194,8 +194,8 @@ class RealRobotLink:
             if self._thread.ident is not None:
                 self.port.stop()
                 return
-            for one in self.port.transports:  # one of them could not be opened
-                one.stop()
+            for transport in self.port.transports:  # one of them could not be opened
+                transport.stop()
 
 
 def _driver(navigator: RealRobotNavigator) -> Navigator | None:
@@ -205,8 +205,8 @@ def _driver(navigator: RealRobotNavigator) -> Navigator | None:
     if issubclass(kind, ExternalNavigator):
         raise InputError(f"RealRobotNavigator: driver {navigator.driver!r} decides nothing; name another navigator")
     values = dict(word.split("=", 1) for word in navigator.parameters.split())
-    found: Navigator = from_attributes(kind, values, "RealRobotNavigator: parameters")
-    return found
+    attributes: Navigator = from_attributes(kind, values, "RealRobotNavigator: parameters")
+    return attributes
 
 
 def open_real_robot(navigator: Any, robots: Sequence[str], simulation: Simulation) -> RealRobotLink:
@@ -280,8 +280,8 @@ class SimulatedRobot:
         Raises:
             InputError: no real robot is expected: the trial has no robot that one takes the place of.
         """
-        inputs = [one.name for one in interface.inputs if ODOMETRY in one.kinds]
-        outputs = [one.name for one in interface.outputs if one.kind == TWIST]
+        inputs = [input_topic.name for input_topic in interface.inputs if ODOMETRY in input_topic.kinds]
+        outputs = [output.name for output in interface.outputs if output.kind == TWIST]
         if not inputs or not outputs:
             raise InputError("bridge 'simulated' takes the place of a real robot: use crowdbot join, or \"real-robot\"")
         self._inbox, self._odometry, self._command = inbox, inputs[0], outputs[0]
@@ -307,9 +307,9 @@ class SimulatedRobot:
 
     def publish(self, messages: Sequence[StepMessage]) -> None:
         """Follow the latest velocity."""
-        for one in messages:
-            if one.topic == self._command:
-                linear, angular = one.message.linear, one.message.angular
+        for message in messages:
+            if message.topic == self._command:
+                linear, angular = message.message.linear, message.message.angular
                 self._twist, self._heard = (linear.x, linear.y, angular.z), time.monotonic()
 
     def poll(self) -> None:

@@ -154,7 +154,7 @@ def read_bvh(data: bytes, name: str, begin: float = 0.0) -> MotionRecording:
     if not mark:
         raise InputError(f"{name} has no MOTION section")
     joints = _read_hierarchy(_Words(head, name))
-    rows, period = _read_motion(motion, head.count("\n") + 1, sum(len(one.channels) for one in joints), name)
+    rows, period = _read_motion(motion, head.count("\n") + 1, sum(len(joint.channels) for joint in joints), name)
     return _recording(joints, rows, period, name, begin)
 
 
@@ -239,7 +239,7 @@ def _recording(joints: list[_Joint], rows: Floats, period: float, name: str, beg
     for k, joint in enumerate(joints):
         rest[k] = joint.offset if joint.parent < 0 else rest[joint.parent] + joint.offset
     rest -= rest[0]
-    names, parents = tuple(one.name for one in joints), tuple(one.parent for one in joints)
+    names, parents = tuple(joint.name for joint in joints), tuple(joint.parent for joint in joints)
     try:
         axes = body_axes(names, parents, rest)
         upright = rest @ axes.T
@@ -285,10 +285,10 @@ def _pose(joints: list[_Joint], row: Floats) -> tuple[Floats, Floats]:
 
 def _turn(axis: int, angle: float) -> Floats:
     i, j = (axis + 1) % 3, (axis + 2) % 3
-    found = np.eye(3)
-    found[i, i] = found[j, j] = math.cos(angle)
-    found[i, j], found[j, i] = -math.sin(angle), math.sin(angle)
-    return found
+    turn = np.eye(3)
+    turn[i, i] = turn[j, j] = math.cos(angle)
+    turn[i, j], turn[j, i] = -math.sin(angle), math.sin(angle)
+    return turn
 
 
 METRES = {"meters": 1.0, "centimeters": 0.01, "millimeters": 0.001}
@@ -349,10 +349,10 @@ def _plain_rows(rows: list[list[str]], name: str) -> dict[str, list[Row]]:
     for cell in header:
         if cell not in (*PLAIN, *OPTIONAL):
             raise InputError(f"{name}:1: {cell[:40]!r} is unknown; known are {', '.join((*PLAIN, *OPTIONAL))}")
-    missing = [one for one in PLAIN if one not in header]
+    missing = [item for item in PLAIN if item not in header]
     if missing or len(set(header)) < len(header):
         raise InputError(f"{name}:1: {', '.join(missing) + ' is missing' if missing else 'a column is there twice'}")
-    found: dict[str, list[Row]] = {}
+    plain_rows: dict[str, list[Row]] = {}
     for line, cells in enumerate(rows[1:], 2):
         if not any(cell.strip() for cell in cells):
             continue
@@ -366,10 +366,10 @@ def _plain_rows(rows: list[list[str]], name: str) -> dict[str, list[Row]]:
         if "time" not in numbers or "y" not in numbers:
             raise InputError(f"{name}:{line}: time, x and y must be given")
         position = (numbers["x"], numbers["y"], numbers.get("z", 0.0))
-        found.setdefault(subject, []).append((numbers["time"], position, _rotation(numbers, f"{name}:{line}")))
-    if not found:
+        plain_rows.setdefault(subject, []).append((numbers["time"], position, _rotation(numbers, f"{name}:{line}")))
+    if not plain_rows:
         raise InputError(f"{name} has no samples")
-    return found
+    return plain_rows
 
 
 def _rotation(numbers: dict[str, float], where: str) -> Floats:
@@ -399,22 +399,22 @@ def _motive_rows(rows: list[list[str]], name: str) -> dict[str, list[Row]]:
     if unit is None:
         raise InputError(f"{name}:1: Length Units must be one of {', '.join(METRES)}")
     first, bodies = _motive_columns(rows, name)
-    found: dict[str, list[Row]] = {one.name: [] for one in bodies}
+    found: dict[str, list[Row]] = {body.name: [] for body in bodies}
     for line, cells in enumerate(rows[first:], first + 1):
         if not any(cell.strip() for cell in cells):
             continue
         time = _number(cells[1] if len(cells) > 1 else "", f"{name}:{line}: time")
-        for one in bodies:
-            own = [cells[k].strip() if k < len(cells) else "" for k in one.columns]
+        for body in bodies:
+            own = [cells[k].strip() if k < len(cells) else "" for k in body.columns]
             if not all(own):
                 continue  # not tracked in this frame
-            numbers = [_number(cell, f"{name}:{line}: {one.name}") for cell in own]
+            numbers = [_number(cell, f"{name}:{line}: {body.name}") for cell in own]
             unit_length = normalize(np.array([numbers[3], *numbers[:3]]))
             if unit_length is None:
-                raise InputError(f"{name}:{line}: {one.name}: the length of a quaternion must be 1")
+                raise InputError(f"{name}:{line}: {body.name}: the length of a quaternion must be 1")
             rotation = FROM_Y_UP @ to_matrices(unit_length) @ FROM_Y_UP.T
             position = FROM_Y_UP @ np.array(numbers[4:]) * unit
-            found[one.name].append((time, tuple(position.tolist()), rotation))
+            found[body.name].append((time, tuple(position.tolist()), rotation))
     seen = {subject: own for subject, own in found.items() if own}
     if not seen:
         raise InputError(f"{name} has no frame in which a rigid body is tracked")
@@ -433,12 +433,12 @@ def _motive_columns(rows: list[list[str]], name: str) -> tuple[int, list[_Column
                 if c < min(len(kinds), len(names), len(parts)) and kinds[c] == "Rigid Body":
                     bodies.setdefault(names[c][:100], {})[f"{parts[c]} {plain[c]}"] = c
             wanted = [*(f"Rotation {axis}" for axis in "XYZW"), *(f"Position {axis}" for axis in "XYZ")]
-            found = [
+            columns = [
                 _Columns(body, [own[key] for key in wanted]) for body, own in bodies.items() if set(wanted) <= set(own)
             ]
-            if not found:
+            if not columns:
                 raise InputError(f"{name}:{k + 1}: there is no rigid body; export skeletons as BVH")
-            return k + 1, found
+            return k + 1, columns
         if len(plain) > 2:
             labels["Part" if plain[2] in ("Rotation", "Position") else plain[1]] = plain
     raise InputError(f"{name} has no row that begins with Frame")
@@ -484,7 +484,7 @@ def read_mvnx(data: bytes, name: str, begin: float = 0.0) -> MotionRecording:
         raise InputError(f"{name}: this is not well-formed XML: {error}") from None
     if not reader.subjects:
         raise InputError(f"{name} has no <subject> with frames")
-    return MotionRecording({one.label: one.recorded(name) for one in reader.subjects}, begin)
+    return MotionRecording({subject.label: subject.recorded(name) for subject in reader.subjects}, begin)
 
 
 class _Subject:
@@ -544,7 +544,7 @@ class _Reader:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         if tag == "subject":
             label = attributes.get("label", "")[:100] or str(len(self.subjects))
-            if len(self.subjects) >= 16 or any(one.label == label for one in self.subjects):
+            if len(self.subjects) >= 16 or any(subject.label == label for subject in self.subjects):
                 raise self._error(f"subject {label!r} is there twice, or there are more than 16")
             self.subjects.append(_Subject(label))
         elif tag == "frame" and self.subjects:

@@ -110,7 +110,7 @@ class VrpnStream(ServerStream):
             BadDatagram: the bytes are no VRPN; the stream connects again.
         """
         self._buffer += data
-        found: list[tuple[str, MotionSample]] = []
+        result: list[tuple[str, MotionSample]] = []
         for when, sender, kind, body in self._messages():
             try:
                 if kind == SENDER:
@@ -118,10 +118,10 @@ class VrpnStream(ServerStream):
                 elif kind == TYPE:
                     _note(self._types, sender, body)
                 elif self._types.get(kind) == POSE_TYPE and sender in self._senders:
-                    found.append(self._sample(self._senders[sender], when, body))
+                    result.append(self._sample(self._senders[sender], when, body))
             except BadDatagram as error:  # the next message is where its length says
                 self._refuse(str(error))
-        return found
+        return result
 
     def _messages(self) -> Iterator[tuple[float, int, int, bytes]]:
         """Remove whole messages from the buffer; return their time [s], sender, type and content."""

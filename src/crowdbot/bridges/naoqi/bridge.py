@@ -39,11 +39,11 @@ def _laser(side: str, message: Any) -> dict[str, float]:
     ranges = np.clip(np.nan_to_num(message.ranges, nan=message.range_max), 0.0, message.range_max)
     wanted = np.linspace(angles[-1], angles[0], SEGMENTS)
     distance = np.interp(wanted, angles, ranges)
-    found = {}
+    laser = {}
     for k, (x, y) in enumerate(zip(distance * np.cos(wanted), distance * np.sin(wanted), strict=True), 1):
         for axis, value in (("X", x), ("Y", y)):
-            found[f"{PLATFORM}/LaserSensor/{side}/Horizontal/Seg{k:02}/{axis}/Sensor/Value"] = float(value)
-    return found
+            laser[f"{PLATFORM}/LaserSensor/{side}/Horizontal/Seg{k:02}/{axis}/Sensor/Value"] = float(value)
+    return laser
 
 
 def _sonar(side: str, message: Any) -> dict[str, float]:
@@ -54,7 +54,7 @@ def _sonar(side: str, message: Any) -> dict[str, float]:
 
 def _bumper(message: Any) -> dict[str, float]:
     """Return the switches of the bumper: 1 pressed, 0 not."""
-    pressed = {int(one) for one in points_in(message)["sector"].ravel()}
+    pressed = {int(item) for item in points_in(message)["sector"].ravel()}
     return {f"{PLATFORM}/{name}/Bumper/Sensor/Value": float(k in pressed) for k, name in enumerate(BUMPERS)}
 
 
@@ -225,10 +225,10 @@ class NaoqiBridge:
         """
         self._inbox = inbox
         self._topics = {}
-        known = {one.name: one.kind for one in interface.outputs}
+        known = {output.name: output.kind for output in interface.outputs}
         for robot in interface.trial.robots:
             topics = {f"/{robot.name}/{sensor}": sensor for sensor in SENSORS}
-            self._topics = {topic: one for topic, one in topics.items() if known.get(topic) == SENSORS[one][0]}
+            self._topics = {topic: item for topic, item in topics.items() if known.get(topic) == SENSORS[item][0]}
             if self._topics:
                 self._robot, self._truth = robot.name, f"/{robot.name}/ground_truth/odom"
                 self._follower = OdometryFollower(robot.x, robot.y, robot.heading)
@@ -281,12 +281,12 @@ class NaoqiBridge:
     def publish(self, messages: Sequence[StepMessage]) -> None:
         """Write the readings of a step into the memory."""
         values: dict[str, float] = {}
-        for one in messages:
-            if one.topic == self._truth and self._follower is not None:
-                place, turn = one.message.pose.pose.position, one.message.pose.pose.orientation
+        for message in messages:
+            if message.topic == self._truth and self._follower is not None:
+                place, turn = message.message.pose.pose.position, message.message.pose.pose.orientation
                 self._follower.note_virtual(place.x, place.y, 2.0 * math.atan2(turn.z, turn.w))
-            elif one.topic in self._topics:
-                values |= memory_values(self._topics[one.topic], one.message)
+            elif message.topic in self._topics:
+                values |= memory_values(self._topics[message.topic], message.message)
         if values:
             self._send(values)
 
@@ -312,7 +312,7 @@ class NaoqiBridge:
         needed = (*self._topics, self._truth)
         if not topic.endswith("/"):
             return topic in needed
-        return any(one == topic[:-1] or one.startswith(topic) for one in needed)
+        return any(item == topic[:-1] or item.startswith(topic) for item in needed)
 
     def stop(self) -> None:
         """Disconnect; the robot rewrites all values within a cycle."""

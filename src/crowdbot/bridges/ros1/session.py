@@ -103,7 +103,7 @@ class Master:
 
     async def gather(self, *calls: tuple[Any, ...]) -> list[Any]:
         """Return the values of several calls, in their order."""
-        return list(await asyncio.gather(*(self.call(*one) for one in calls)))
+        return list(await asyncio.gather(*(self.call(*call) for call in calls)))
 
 
 MOST_BODY = 1 << 20
@@ -181,7 +181,7 @@ class SlaveApi:
         if method in plain:
             return 1, "", plain[method]
         if method == "publisherUpdate":
-            self.found(str(values[1]), [str(one) for one in values[2]])
+            self.found(str(values[1]), [str(item) for item in values[2]])
             return 1, "", 0
         if method == "requestTopic":
             return self._request_topic(str(values[1]), values[2])
@@ -191,7 +191,7 @@ class SlaveApi:
         return -1, f"there is no method {method[:40]!r}", 0
 
     def _request_topic(self, topic: str, protocols: Any) -> Answer:
-        if not any(one and one[0] == "TCPROS" for one in protocols):
+        if not any(protocol and protocol[0] == "TCPROS" for protocol in protocols):
             return 0, "only TCPROS is supported", 0
         place = self.topic_address(topic)
         if place is None:
@@ -377,8 +377,8 @@ class Ros1Subscription:
     async def close(self) -> None:
         """Leave all publishers."""
         tasks = list(self._tasks.values())
-        for one in tasks:
-            one.cancel()
+        for task in tasks:
+            task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _follow(self, api: str, master: Master) -> None:
@@ -563,7 +563,7 @@ class Parameters:
         first = f"/{self.interface.trial.robots[0].name}/{DESCRIPTION}" if self.interface.trial.robots else ""
         if first in values:
             values[f"/{DESCRIPTION}"] = values[first]
-        if all(one.name != "/clock" for one in self.interface.inputs):
+        if all(input_topic.name != "/clock" for input_topic in self.interface.inputs):
             values[TIME] = True
         for name, value in values.items():
             if name not in self._before:
@@ -684,8 +684,8 @@ class Ros1Session:
         """Unregister, and close all connections."""
         with contextlib.suppress(InputError):
             await self._unregister()
-        for one in self._subscriptions.values():
-            await one.close()
+        for subscription in self._subscriptions.values():
+            await subscription.close()
         if self._server is not None:
             self._server.close()
         for task in list(self._peers):
@@ -722,27 +722,32 @@ class Ros1Session:
 
     def _choose_topics(self) -> None:
         """Make what is sent and received fit the interface; connections of topics that stay are kept."""
-        outputs = {one.name: one for one in (*self.interface.outputs, LOG)}
-        kept = {name: one for name, one in self.publications.items() if name in outputs}
-        kept = {name: one for name, one in kept.items() if one.kind == outputs[name].kind}
-        self.publications = {name: kept.get(name) or Publication(one, self.codec) for name, one in outputs.items()}
-        for one in self.interface.inputs:
-            if one.name not in self._subscriptions:
-                self._subscriptions[one.name] = Ros1Subscription(one, self.codec, self.inbox, self.log)
+        outputs = {item.name: item for item in (*self.interface.outputs, LOG)}
+        kept = {name: publication for name, publication in self.publications.items() if name in outputs}
+        kept = {name: item for name, item in kept.items() if item.kind == outputs[name].kind}
+        self.publications = {
+            name: kept.get(name) or Publication(output, self.codec) for name, output in outputs.items()
+        }
+        for input_topic in self.interface.inputs:
+            if input_topic.name not in self._subscriptions:
+                self._subscriptions[input_topic.name] = Ros1Subscription(input_topic, self.codec, self.inbox, self.log)
 
     async def _register(self) -> None:
         """Tell the master all topics and services; what it knows already stays as it is."""
         master, url = self._master, self.url
-        wanted = {one.name for one in self.interface.inputs}
+        wanted = {input_topic.name for input_topic in self.interface.inputs}
         for name in set(self._subscriptions) - wanted:
             gone = self._subscriptions.pop(name)
             await gone.close()
             await master.call("unregisterSubscriber", name, url)
-        sent = [("registerPublisher", one.topic, ros1_kind(one.kind), url) for one in self.publications.values()]
+        sent = [
+            ("registerPublisher", publication.topic, ros1_kind(publication.kind), url)
+            for publication in self.publications.values()
+        ]
         await master.gather(*sent)
         await self._drop_publications()
         heard = list(self._subscriptions.values())
-        found = await master.gather(*(("registerSubscriber", one.topic, ros1_kind(one.kind), url) for one in heard))
+        found = await master.gather(*(("registerSubscriber", item.topic, ros1_kind(item.kind), url) for item in heard))
         for one, publishers in zip(heard, found, strict=True):
             one.connect(publishers, master)
         address = f"rosrpc://{self.host}:{self._port}"
@@ -753,7 +758,7 @@ class Ros1Session:
         """Unregister topics that are no longer sent."""
         state = await self._master.call("getSystemState")
         known = [topic for topic, nodes in state[0] if NODE in nodes]
-        gone = [("unregisterPublisher", one, self.url) for one in known if one not in self.publications]
+        gone = [("unregisterPublisher", item, self.url) for item in known if item not in self.publications]
         await self._master.gather(*gone)
 
     async def _unregister(self) -> None:
@@ -780,8 +785,8 @@ class Ros1Session:
 
     def _topics(self) -> tuple[list[list[str]], list[list[str]]]:
         return (
-            [[one.topic, ros1_kind(one.kind)] for one in self.publications.values()],
-            [[one.topic, ros1_kind(one.kind)] for one in self._subscriptions.values()],
+            [[publication.topic, ros1_kind(publication.kind)] for publication in self.publications.values()],
+            [[subscription.topic, ros1_kind(subscription.kind)] for subscription in self._subscriptions.values()],
         )
 
     async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -817,8 +822,8 @@ class Ros1Session:
             if sending in done:
                 sending.result()
         finally:
-            for one in (sending, gone):
-                one.cancel()
+            for item in (sending, gone):
+                item.cancel()
             await asyncio.gather(sending, gone, return_exceptions=True)
 
 

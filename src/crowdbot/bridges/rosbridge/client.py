@@ -90,7 +90,7 @@ class RosbridgeClient:
 
     def publish(self, messages: Sequence[StepMessage]) -> None:
         """Hand the messages of a step to the thread of the client."""
-        self._steps.append([OutgoingMessage.of(one) for one in messages])
+        self._steps.append([OutgoingMessage.of(message) for message in messages])
         self._call(self._deliver)
 
     def poll(self) -> None:
@@ -105,8 +105,8 @@ class RosbridgeClient:
         if topic.endswith("/"):
             return True
         if self.topics is not None:
-            return any(fnmatch.fnmatchcase(topic, one) for one in self.topics)
-        return not any(fnmatch.fnmatchcase(topic, one) for one in LEFT_OUT)
+            return any(fnmatch.fnmatchcase(topic, item) for item in self.topics)
+        return not any(fnmatch.fnmatchcase(topic, item) for item in LEFT_OUT)
 
     def stop(self) -> None:
         """Disconnect."""
@@ -157,8 +157,8 @@ class RosbridgeClient:
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            for one in tasks:
-                one.cancel()
+            for task in tasks:
+                task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _receive(self, socket: aiohttp.ClientWebSocketResponse) -> None:
@@ -184,10 +184,10 @@ class RosbridgeClient:
 
     def _next_frames(self) -> list[str | bytes]:
         now = time.monotonic()
-        for topic, one in self._outgoing.items():
-            if one.wait_time(now) is not None:
+        for topic, item in self._outgoing.items():
+            if item.wait_time(now) is not None:
                 self._outgoing[topic] = self._outgoing.pop(topic)  # the next topic has its turn
-                return one.take(now)
+                return item.take(now)
         return []
 
     def _announce(self) -> None:
@@ -198,8 +198,8 @@ class RosbridgeClient:
             if self.wants(output.name):
                 latch = output.quality.latched
                 self._reply({"op": "advertise", "topic": output.name, "type": output.kind, "latch": latch})
-        for one in self._interface.inputs:
-            self._reply({"op": "subscribe", "topic": one.name, "type": one.kinds[0]})
+        for input_topic in self._interface.inputs:
+            self._reply({"op": "subscribe", "topic": input_topic.name, "type": input_topic.kinds[0]})
         for service in self._interface.services:
             self._reply({"op": "advertise_service", "service": service.name, "type": service.kind})
         for message in self._latched.values():
@@ -207,13 +207,13 @@ class RosbridgeClient:
 
     def _deliver(self) -> None:
         assert self._interface is not None
-        latched = {one.name for one in self._interface.outputs if one.quality.latched}
+        latched = {output.name for output in self._interface.outputs if output.quality.latched}
         while self._steps:
-            for one in self._steps.popleft():
-                if self.wants(one.topic):
-                    if one.topic in latched:
-                        self._latched[one.topic] = one
-                    self._offer(one)
+            for item in self._steps.popleft():
+                if self.wants(item.topic):
+                    if item.topic in latched:
+                        self._latched[item.topic] = item
+                    self._offer(item)
 
     def _offer(self, message: OutgoingMessage) -> None:
         if message.topic not in self._outgoing:

@@ -100,25 +100,25 @@ class RosGraph:
         self.advertised: dict[str, dict[Peer, str]] = {}
         self._latching: set[str] = set()
         """Topics of clients whose latest message late subscribers get."""
-        self._outputs = {one.name: one for one in interface.outputs}
-        self._inputs = {one.name: one for one in interface.inputs}
+        self._outputs = {output.name: output for output in interface.outputs}
+        self._inputs = {input_topic.name: input_topic for input_topic in interface.inputs}
 
     def change(self, interface: RobotInterface) -> None:
         """Announce other topics and services; clients and their subscriptions stay."""
         self.interface = interface
-        self._outputs = {one.name: one for one in interface.outputs}
-        self._inputs = {one.name: one for one in interface.inputs}
+        self._outputs = {output.name: output for output in interface.outputs}
+        self._inputs = {input_topic.name: input_topic for input_topic in interface.inputs}
         kept = {name for name in self.latched if name in self._outputs or name in self.advertised}
-        self.latched = {name: one for name, one in self.latched.items() if name in kept}
+        self.latched = {name: item for name, item in self.latched.items() if name in kept}
 
     def deliver(self, messages: Iterable[OutgoingMessage]) -> None:
         """Give messages to the clients that subscribe their topics."""
-        for one in messages:
-            if one.topic in self._outputs and self._outputs[one.topic].quality.latched:
-                self.latched[one.topic] = one
-            self.now = max(self.now, one.nanoseconds) if one.topic != "/clock" else one.nanoseconds
+        for message in messages:
+            if message.topic in self._outputs and self._outputs[message.topic].quality.latched:
+                self.latched[message.topic] = message
+            self.now = max(self.now, message.nanoseconds) if message.topic != "/clock" else message.nanoseconds
             for session in self.sessions:
-                session.offer(one)
+                session.offer(message)
 
     def publish(self, sender: Peer, topic: str, fields: Any, latch: bool) -> None:
         """Take a message of a client: a command, or a message for other clients.
@@ -198,7 +198,7 @@ class RosGraph:
     @property
     def service_types(self) -> dict[str, str]:
         """Types of the services of the simulation and of clients by name."""
-        return {one.name: one.kind for one in self.interface.services} | {
+        return {service.name: service.kind for service in self.interface.services} | {
             name: kind for name, (_, kind) in self.services.items()
         }
 
@@ -320,7 +320,7 @@ def _service_type(graph: RosGraph, request: Request) -> Answer:
 
 def _services_for_type(graph: RosGraph, request: Request) -> Answer:
     kind = _text(request, "type")
-    return {"services": [name for name, one in graph.service_types.items() if one == kind]}
+    return {"services": [name for name, service_type_ in graph.service_types.items() if service_type_ == kind]}
 
 
 def _service_node(graph: RosGraph, request: Request) -> Answer:
@@ -330,15 +330,15 @@ def _service_node(graph: RosGraph, request: Request) -> Answer:
 
 def _service_providers(graph: RosGraph, request: Request) -> Answer:
     kind = _text(request, "service")
-    return {"providers": [name for name, one in graph.service_types.items() if one == kind]}
+    return {"providers": [name for name, service_type_ in graph.service_types.items() if service_type_ == kind]}
 
 
 def _service_details(make: Callable[[Any], str]) -> Callable[[RosGraph, Request], Answer]:
     def answer(graph: RosGraph, request: Request) -> Answer:
         kind = _text(request, "type")
-        for one in SERVICES.values():
-            if kind in (f"{PACKAGE}/srv/{one.kind}", f"{PACKAGE}/{one.kind}"):
-                return {"typedefs": type_details(make(one))}
+        for item in SERVICES.values():
+            if kind in (f"{PACKAGE}/srv/{item.kind}", f"{PACKAGE}/{item.kind}"):
+                return {"typedefs": type_details(make(item))}
         raise InputError(f"the service type {kind[:80]!r} is unknown")
 
     return answer
@@ -351,22 +351,26 @@ def _nodes(graph: RosGraph, request: Request) -> Answer:
 def _node_details(graph: RosGraph, request: Request) -> Answer:
     if _text(request, "node") != NODE:
         return {"subscribing": [], "publishing": [], "services": []}
-    inputs = [one.name for one in graph.interface.inputs]
-    outputs = [one.name for one in graph.interface.outputs]
-    return {"subscribing": inputs, "publishing": outputs, "services": [one.name for one in graph.interface.services]}
+    inputs = [input_topic.name for input_topic in graph.interface.inputs]
+    outputs = [output.name for output in graph.interface.outputs]
+    return {
+        "subscribing": inputs,
+        "publishing": outputs,
+        "services": [service.name for service in graph.interface.services],
+    }
 
 
 def _publishers(graph: RosGraph, request: Request) -> Answer:
     topic = _text(request, "topic")
-    own = [NODE] if topic in {one.name for one in graph.interface.outputs} else []
-    clients = [f"/rosbridge_client_{graph.sessions.index(one) + 1}" for one in graph.advertised.get(topic, {})]
+    own = [NODE] if topic in {output.name for output in graph.interface.outputs} else []
+    clients = [f"/rosbridge_client_{graph.sessions.index(item) + 1}" for item in graph.advertised.get(topic, {})]
     return {"publishers": own + clients}
 
 
 def _subscribers(graph: RosGraph, request: Request) -> Answer:
     topic = _text(request, "topic")
-    own = [NODE] if topic in {one.name for one in graph.interface.inputs} else []
-    rows = [f"/rosbridge_client_{k + 1}" for k, one in enumerate(graph.sessions) if topic in one.subscriptions]
+    own = [NODE] if topic in {input_topic.name for input_topic in graph.interface.inputs} else []
+    rows = [f"/rosbridge_client_{k + 1}" for k, session in enumerate(graph.sessions) if topic in session.subscriptions]
     return {"subscribers": own + rows}
 
 
@@ -461,7 +465,7 @@ class CallRelay:
 
     def forget(self, caller: Peer) -> None:
         """Drop the calls of a client that has gone."""
-        for number in [number for number, (one, _) in self._asked.items() if one is caller]:
+        for number in [number for number, (item, _) in self._asked.items() if item is caller]:
             del self._asked[number]
 
     def fail(self, frame: Frame, text: str) -> None:
@@ -536,8 +540,8 @@ class CallRelay:
 
     def cancel(self, caller: Peer, name: str, action: str) -> bool:
         """Tell this client that a goal of another one is cancelled; return whether it has the goal."""
-        for number, (one, asked) in self._asked.items():
-            if one is caller and asked.get("id") == name:
+        for number, (item, asked) in self._asked.items():
+            if item is caller and asked.get("id") == name:
                 self.session.reply({"op": "cancel_action_goal", "id": number, "action": action})
                 return True
         return False

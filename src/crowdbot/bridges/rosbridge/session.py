@@ -98,12 +98,12 @@ class Subscription:
 
     def _settle(self) -> None:
         asked = self._asked.values()
-        self._interval = min(one["throttle"] for one in asked)
-        sizes = [one["fragment"] for one in asked if one["fragment"] is not None]
+        self._interval = min(item["throttle"] for item in asked)
+        sizes = [item["fragment"] for item in asked if item["fragment"] is not None]
         self._fragment = min(sizes) if sizes else None
-        wanted = {one["compression"] for one in asked}
+        wanted = {item["compression"] for item in asked}
         self._compression = next(name for name in ("none", "png", "cbor", "cbor-raw") if name in wanted)
-        depth = max(self.depth, *(one["queue"] for one in asked)) if asked else self.depth
+        depth = max(self.depth, *(item["queue"] for item in asked)) if asked else self.depth
         if depth != self._waiting.maxlen:
             self._waiting = deque(self._waiting, maxlen=depth)
 
@@ -246,14 +246,14 @@ class ClientSession:
         known = self.graph.topic_types(topic)
         if kind and known and ros2_type(kind) not in known:
             raise InputError(f"{topic!r} has the type {known[0]}, not {kind[:80]!r}")
-        found = self.subscriptions.get(topic)
-        if found is None:
+        subscription = self.subscriptions.get(topic)
+        if subscription is None:
             if len(self.subscriptions) >= MOST_SUBSCRIPTIONS:
                 raise InputError(f"{MOST_SUBSCRIPTIONS} subscriptions are too many")
-            found = Subscription(topic, self.graph.queue_depth(topic))
-        found.add(str(frame.get("id", "")), frame)
+            subscription = Subscription(topic, self.graph.queue_depth(topic))
+        subscription.add(str(frame.get("id", "")), frame)
         if topic not in self.subscriptions:
-            self.subscriptions[topic] = found
+            self.subscriptions[topic] = subscription
             self._turn.append(topic)
             self.graph.collect_subscriptions()
             if topic in self.graph.latched:

@@ -176,11 +176,11 @@ def ids(values: NDArray[Any], column: str, name: str, line: Lines) -> tuple[NDAr
 
 def labels(values: NDArray[Any], id: NDArray[np.int64]) -> dict[int, str]:
     """Return the first label of every id that has one."""
-    found: dict[int, str] = {}
+    result: dict[int, str] = {}
     for key, label in zip(id.tolist(), values.tolist(), strict=True):
-        if label not in (None, "") and key not in found:
-            found[key] = str(label)
-    return found
+        if label not in (None, "") and key not in result:
+            result[key] = str(label)
+    return result
 
 
 def _pointed(values: list[Any]) -> list[Any]:

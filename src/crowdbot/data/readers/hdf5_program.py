@@ -53,7 +53,7 @@ def read_arrays(path: str, max_values: int, names: list[str]) -> tuple[dict[str,
 
     with h5py.File(path, "r") as file:
         known = {name: file.get(name) for name in names}
-        found = {k: one for k, one in known.items() if isinstance(one, h5py.Dataset) and one.dtype.kind in "fiu"}
+        found = {k: item for k, item in known.items() if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu"}
         sizes = {name: int(one.size) for name, one in found.items()}
         about = {"held": sorted(file)[:20], "values": sizes}
         if len(found) < len(names) or sum(sizes.values()) > max_values:

@@ -108,12 +108,12 @@ def _cards(episode: Episode, predicted: Sequence[PredictionResult]) -> str:
 
 
 def _prediction_table(predicted: Sequence[PredictionResult], future: Windows) -> str:
-    best, marked = min(one.score.ade for one in predicted), ' class="best"'
+    best, marked = min(item.score.ade for item in predicted), ' class="best"'
     rows = "".join(
-        f"<tr{marked if one.score.ade == best else ''}><td>{html.escape(one.score.predictor)}</td>"
-        + "".join(f"<td>{cell}</td>" for cell in one.score.cells())
+        f"<tr{marked if item.score.ade == best else ''}><td>{html.escape(item.score.predictor)}</td>"
+        + "".join(f"<td>{cell}</td>" for cell in item.score.cells())
         + "</tr>"
-        for one in predicted
+        for item in predicted
     )
     head = "".join(f"<th>{name}</th>" for name in ("predictor", *predicted[0].score.columns))
     horizon = future.dt * future.position.shape[1]
@@ -169,16 +169,16 @@ def _horizon_chart(predicted: Sequence[PredictionResult], dt: float) -> str:
         errors, differences = figure.subplots(1, 2)
         first = np.asarray(predicted[0].score.horizon)
         times = dt * np.arange(1, len(first) + 1)
-        for one, color, (marker, line) in zip(predicted, COLORS, LINES, strict=False):
-            look: dict[str, Any] = {"color": color, "label": one.score.predictor, "marker": marker, "linestyle": line}
-            curve = np.asarray(one.score.horizon)
+        for item, color, (marker, line) in zip(predicted, COLORS, LINES, strict=False):
+            look: dict[str, Any] = {"color": color, "label": item.score.predictor, "marker": marker, "linestyle": line}
+            curve = np.asarray(item.score.horizon)
             errors.plot(times, curve, markersize=4, **look)
             differences.plot(times, curve - first, markersize=4, **look)
         errors.set_ylabel("mean error [m]")
         errors.set_ylim(bottom=0.0)
         errors.legend(frameon=False)
         differences.set_ylabel(f"difference to {predicted[0].score.predictor} [m]")
-        far = [float(np.max(np.abs(np.asarray(one.score.horizon) - first))) for one in predicted[1:]]
+        far = [float(np.max(np.abs(np.asarray(item.score.horizon) - first))) for item in predicted[1:]]
         if far and (reach := sorted(far)[(len(far) - 1) // 2]) > 0.0:
             differences.set_ylim(-1.3 * reach, 1.3 * reach)
         for axes in (errors, differences):
@@ -257,12 +257,12 @@ def _forecasts(past: Windows, future: Windows, predicted: Sequence[PredictionRes
         "truth": _paths(past, future, future.position),
         "predictors": [
             {
-                "name": one.score.predictor,
+                "name": item.score.predictor,
                 "color": color,
                 "shown": index in (0, len(predicted) - 1),
-                "paths": _paths(past, future, one.forecast.position[:, 0]),
+                "paths": _paths(past, future, item.forecast.position[:, 0]),
             }
-            for index, (one, color) in enumerate(zip(predicted, COLORS, strict=False))
+            for index, (item, color) in enumerate(zip(predicted, COLORS, strict=False))
         ],
     }
 

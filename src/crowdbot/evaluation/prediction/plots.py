@@ -38,11 +38,11 @@ def plot_errors(results: Sequence[PredictorResult], file: Path) -> None:
     figure, axes = _figure(1, len(panels), (1.0 + 5.5 * len(panels), 1.2 + 0.17 * min(most, SHOWN_ROWS)))
     for axis, (recording, own) in zip(axes[0], panels.items(), strict=True):
         ranked = sorted(own, key=lambda one: one.score.ade)[:SHOWN_ROWS]
-        for row, one in enumerate(ranked):
-            low, high = one.score.intervals.ade
-            axis.barh(row, one.score.ade, color=_color(one), height=0.7)
+        for row, item in enumerate(ranked):
+            low, high = item.score.intervals.ade
+            axis.barh(row, item.score.ade, color=_color(item), height=0.7)
             axis.plot((low, high), (row, row), color="black", linewidth=1)
-        axis.set_yticks(range(len(ranked)), [one.label for one in ranked], fontsize=6)
+        axis.set_yticks(range(len(ranked)), [item.label for item in ranked], fontsize=6)
         axis.margins(y=0.01)
         axis.invert_yaxis()
         axis.set_xlabel(f"ADE [{own[0].score.units}], 95 % bootstrap interval", fontsize=8)
@@ -68,11 +68,11 @@ def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
     figure, axes = _figure(len(panels), 3, (13, 0.8 + 2.5 * len(panels)))
     for row, (recording, own) in zip(axes, panels.items(), strict=True):
         shown = own[:MOST_LINES]
-        for color, one in zip(COLORS, shown, strict=False):
-            frames = one.frames
+        for color, item in zip(COLORS, shown, strict=False):
+            frames = item.frames
             for axis, values in zip(row, (frames.ade, frames.cost, 1e3 * frames.seconds), strict=True):
                 if not np.all(np.isnan(values)):
-                    axis.plot(*_broken(frames.frame, values), color=color, linewidth=0.9, label=one.label)
+                    axis.plot(*_broken(frames.frame, values), color=color, linewidth=0.9, label=item.label)
         unit = own[0].score.units
         for axis, name in zip(row, (f"error (ADE) [{unit}]", "minimum cost [m]", "time [ms]"), strict=True):
             axis.set_title(f"{recording.name}: {name}", fontsize=9)
@@ -80,7 +80,7 @@ def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
             axis.tick_params(labelsize=8)
             axis.grid(alpha=0.25, linewidth=0.6)
         row[2].set_yscale("log")
-        if not any(one.frames.calibrated for one in shown):
+        if not any(item.frames.calibrated for item in shown):
             row[1].text(0.5, 0.5, "nothing was calibrated", ha="center", transform=row[1].transAxes, fontsize=8)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
     _save(figure, file)
@@ -103,7 +103,7 @@ def animate_window(evaluation: PredictorEvaluation, frame: int, file: Path) -> P
     if len(evaluation.specs) > MOST_LINES:
         raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(evaluation.specs)}")
     recording, window = evaluation.window_at(frame)
-    past, future = (one[window : window + 1] for one in recording.windows)
+    past, future = (item[window : window + 1] for item in recording.windows)
     labels = evaluation.labels()
     paths = {labels[spec.name]: _paths(spec, recording, past, evaluation) for spec in evaluation.specs}
     figure, axes = _figure(1, 1, (7.5, 7.0))
@@ -166,14 +166,14 @@ def _paths(spec: PredictorSpec, recording: Recording, past: Windows, evaluation:
     predictor = spec.build(recording)
     forecast = predictor.predict(past, recording.predict, evaluation.samples, stream(evaluation.seed, "animate"))
     own = forecast.person_weight
-    found = _Futures([], [])
+    futures = _Futures([], [])
     for person in np.flatnonzero(past.present[0, -1]):
         weight = forecast.weight[0] if own is None else own[0, :, person]
         order = np.argsort(weight, kind="stable")  # the most probable one is drawn last
         for k in order[weight[order] > 0.0]:
-            found.path.append(np.concatenate([past.position[0, -1:, person], forecast.position[0, k, :, person]]))
-            found.opacity.append(max(FAINTEST, float(weight[k] / weight.max())))
-    return found
+            futures.path.append(np.concatenate([past.position[0, -1:, person], forecast.position[0, k, :, person]]))
+            futures.opacity.append(max(FAINTEST, float(weight[k] / weight.max())))
+    return futures
 
 
 def _fan(axis: Any, color: str, name: str, futures: _Futures) -> Any:
@@ -182,7 +182,7 @@ def _fan(axis: Any, color: str, name: str, futures: _Futures) -> Any:
     from matplotlib.colors import to_rgba
 
     axis.plot([], [], color=color, linewidth=1.6, label=name)
-    colors = [to_rgba(color, one) for one in futures.opacity]
+    colors = [to_rgba(color, item) for item in futures.opacity]
     single = min(futures.opacity, default=1.0) == 1.0  # single trajectories are drawn above the fans of others
     fan = LineCollection([], colors=colors, linewidths=1.6, zorder=2.5 if single else 2.0)
     axis.add_collection(fan)
@@ -221,12 +221,12 @@ def _at(past: Windows, future: Windows, reach: float) -> NDArray[np.float64]:
 def _until(tracks: list[NDArray[np.float64]], reach: float) -> list[NDArray[np.float64]]:
     """Return the lines up to ``reach`` rows ahead."""
     row = int(reach)
-    found = []
+    until = []
     for track in tracks:
         after = min(row + 1, len(track) - 1)
         tip = track[min(row, len(track) - 1)] + (reach - row) * (track[after] - track[min(row, len(track) - 1)])
-        found.append(np.vstack([track[: row + 1], tip]))
-    return found
+        until.append(np.vstack([track[: row + 1], tip]))
+    return until
 
 
 def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -236,10 +236,10 @@ def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDAr
 
 
 def _by_recording(results: Sequence[PredictorResult]) -> dict[Recording, list[PredictorResult]]:
-    found: dict[Recording, list[PredictorResult]] = {}
+    recording: dict[Recording, list[PredictorResult]] = {}
     for result in results:
-        found.setdefault(result.recording, []).append(result)
-    return found
+        recording.setdefault(result.recording, []).append(result)
+    return recording
 
 
 def _figure(rows: int, columns: int, size: tuple[float, float]) -> tuple[Any, Any]:

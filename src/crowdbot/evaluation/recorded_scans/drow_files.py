@@ -39,7 +39,7 @@ def read_drow(file: Path | str, max_range: float = 15.0) -> list[AnnotatedScan]:
     """
     path = Path(file)
     people = _annotations(path.with_suffix(SUFFIX))
-    found: list[AnnotatedScan] = []
+    annotated_scans: list[AnnotatedScan] = []
     width, angles = 0, np.zeros(0)
     for number, line in enumerate(_lines(path), 1):
         head, _, rest = line.partition(",")
@@ -56,15 +56,15 @@ def read_drow(file: Path | str, max_range: float = 15.0) -> list[AnnotatedScan]:
             )
         angles = angles if len(angles) else np.linspace(-0.5 * FIELD_OF_VIEW, 0.5 * FIELD_OF_VIEW, len(row) - 1)
         scan = planar_scan(float(row[0]), row[1:], angles, max_range)
-        found.append(AnnotatedScan(scan, people.get(int(head))))
-    if not any(one.people is not None for one in found):
+        annotated_scans.append(AnnotatedScan(scan, people.get(int(head))))
+    if not any(one.people is not None for one in annotated_scans):
         raise DataError(f"{path} has no scan with a line in {path.with_suffix(SUFFIX).name}")
-    return found
+    return annotated_scans
 
 
 def _annotations(path: Path) -> dict[int, Floats]:
     """Return the people ``[N, 2]`` [m] of each annotated scan by its number."""
-    found = {}
+    result = {}
     for number, line in enumerate(_lines(path), 1):
         head, _, rest = line.partition(",")
         try:
@@ -74,8 +74,8 @@ def _annotations(path: Path) -> dict[int, Floats]:
             raise DataError(f"{path} line {number} must be the number of a scan and a list of [range, angle]") from None
         if not np.isfinite(rows).all():
             raise DataError(f"{path} line {number} has a number that is not finite")
-        found[scan] = rows[:, :1] * np.stack([np.cos(rows[:, 1]), np.sin(rows[:, 1])], axis=-1)
-    return found
+        result[scan] = rows[:, :1] * np.stack([np.cos(rows[:, 1]), np.sin(rows[:, 1])], axis=-1)
+    return result
 
 
 def _lines(path: Path) -> list[str]:

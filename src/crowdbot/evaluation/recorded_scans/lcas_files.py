@@ -51,7 +51,7 @@ def read_pcd(file: Path) -> NDArray[np.float64]:
         raise DataError(f"{file}: DATA {kind} must be ascii or binary")
     at = [fields.index(axis) for axis in AXES]
     if kind == "binary":
-        dtype = np.dtype([(f"f{k}", *one) for k, one in enumerate(types)])
+        dtype = np.dtype([(f"f{k}", *type_) for k, type_ in enumerate(types)])
         if len(raw) - begin < points * dtype.itemsize:
             raise DataError(f"{file} is truncated: {points} points of {dtype.itemsize} bytes are announced")
         rows = np.frombuffer(raw, dtype, points, begin)
@@ -96,7 +96,7 @@ def _layout(header: dict[str, list[str]], file: Path) -> tuple[list[str], list[t
         raise DataError(f"{file} has {points} points, or counts {counts}; at most {MOST_POINTS} points are read")
     if any(counts[fields.index(axis)] != 1 if axis in fields else True for axis in AXES):
         raise DataError(f"{file} must have the fields x, y and z; it has {', '.join(fields)}")
-    return fields, [(one, (count,)) for one, count in zip(types, counts, strict=True)], points
+    return fields, [(type_, (count,)) for type_, count in zip(types, counts, strict=True)], points
 
 
 HEIGHT = 0.8

@@ -28,10 +28,10 @@ def plot_scan_scores(scores: dict[str, ScanScores], title: str, file: Path) -> P
     axes[1, 2].set_visible(False)
     axes[0, 2].tick_params(labelbottom=True)
     for axis, (name, unit) in zip(axes.flat, SCAN_SCORES.items(), strict=False):
-        for color, (label, one) in zip(COLORS * len(scores), scores.items(), strict=False):
-            rows = np.array([estimate[:3] for estimate in one.estimates()[name]])
-            axis.plot(one.horizons, rows[:, 0], "o-", color=color, label=label, markersize=4)
-            axis.fill_between(one.horizons, rows[:, 1], rows[:, 2], color=color, alpha=0.2, linewidth=0)
+        for color, (label, item) in zip(COLORS * len(scores), scores.items(), strict=False):
+            rows = np.array([estimate[:3] for estimate in item.estimates()[name]])
+            axis.plot(item.horizons, rows[:, 0], "o-", color=color, label=label, markersize=4)
+            axis.fill_between(item.horizons, rows[:, 1], rows[:, 2], color=color, alpha=0.2, linewidth=0)
         axis.set_ylabel(name.replace("_", " ") + (f" [{unit}]" if unit else ""))
         axis.set_ylim(bottom=0.0)
         axis.grid(alpha=0.3)

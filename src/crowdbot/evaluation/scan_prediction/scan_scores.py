@@ -106,7 +106,7 @@ def score_scans(
         InputError: a log is too short, or is not of a planar scanner.
     """
     values = [_score_log(log, predictor, protocol, samples, seed) for log in logs]
-    return ScanScores(np.stack(values, axis=1), tuple(float(one) for one in protocol.horizons))
+    return ScanScores(np.stack(values, axis=1), tuple(float(horizon) for horizon in protocol.horizons))
 
 
 def _score_log(
@@ -192,8 +192,8 @@ def _compare(
     chance = np.einsum("k,ktxy->txy", forecast.weight, cells.astype(np.float64))
     error = np.einsum("k,kt->t", forecast.weight, range_error(limit[None], forecast.ranges, protocol.range_max))
     till, expected = (
-        scan_time_to_collision(_points(one, forecast.angles), velocity, ROBOT_RADIUS, LONGEST)
-        for one in (limit[None], predicted)
+        scan_time_to_collision(_points(item, forecast.angles), velocity, ROBOT_RADIUS, LONGEST)
+        for item in (limit[None], predicted)
     )
     return np.stack(
         [

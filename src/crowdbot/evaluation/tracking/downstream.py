@@ -66,14 +66,14 @@ def estimate_downstream(
     rows: dict[str, list[list[float]]] = {name: [] for name in DOWNSTREAM_INPUTS}
     for run in runs:
         scores = _score_run(run, predictor, reach, seed)
-        for name, one in scores.items():
-            rows[name].append(one)
-    if not any(np.isfinite(one[0]) for one in rows["true"]):
+        for name, score in scores.items():
+            rows[name].append(score)
+    if not any(np.isfinite(item[0]) for item in rows["true"]):
         least = (OBSERVE + AHEAD) * STEP
         raise InputError(f"{runs[0].log.name}: nobody is tracked and seen on for {least:g} s; take longer runs")
     return {
         name: {
-            score: bootstrap_estimate(np.array([one[k] for one in some]), seed=seed)
+            score: bootstrap_estimate(np.array([item[k] for item in some]), seed=seed)
             for k, score in enumerate(DOWNSTREAM_SCORES)
         }
         for name, some in rows.items()
@@ -128,7 +128,7 @@ def _cases(run: TrackingRun, reach: float) -> Iterator[_Case]:
     every = max(1, round(STEP / float(np.median(np.diff(time)))))
     table = run.table()
     people = sorted({who for row in rows for who in {**row.people, **row.others}})
-    tracks = sorted({who for one in run.tracks for who in one.ids.tolist()})
+    tracks = sorted({who for track in run.tracks for who in track.ids.tolist()})
     robot = np.array([row.robot for row in rows])
     for now in range((OBSERVE - 1) * every, len(rows) - AHEAD * every, every):
         past = now - every * np.arange(OBSERVE - 1, -1, -1)

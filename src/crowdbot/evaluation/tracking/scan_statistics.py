@@ -99,12 +99,12 @@ def scan_statistics(rows: Iterable[tuple[Reading, Floats]]) -> tuple[list[Return
         place = planar_pose(reading.pose).position[0]
         for person in people:
             away = float(np.hypot(*(person - place)))
-            band = next((one for (near, far), one in bands.items() if near <= away < far), None)
+            band = next((band for (near, far), band in bands.items() if near <= away < far), None)
             if band is not None:
                 _add(reading, person, place, away, band)
     if not beams:
         raise InputError("there are no scans")
-    return [one.summary(*limits) for limits, one in bands.items()], missing / beams
+    return [band.summary(*limits) for limits, band in bands.items()], missing / beams
 
 
 def _add(reading: Scan | PointCloud, person: Floats, place: Floats, away: float, band: _Band) -> None:

@@ -37,10 +37,10 @@ def plot_video_run(run: VideoRun, file: Path, truth: TruePaths | None = None) ->
     left.imshow(run.image)
     left.set_axis_off()
     left.set_title(f"last frame, {run.time[-1]:.1f} s: people on the floor and forecasts")
-    now = [one for one in run.forecasts if one.time == run.time[-1]]
+    now = [forecast for forecast in run.forecasts if forecast.time == run.time[-1]]
     pose = run.pose[-1]
-    for one in now:
-        _draw_on_image(left, run, one)
+    for item in now:
+        _draw_on_image(left, run, item)
     left.set(xlim=(0, run.image.shape[1]), ylim=(run.image.shape[0], 0))
     if truth is not None:
         _draw_truth(right, run, truth)
@@ -50,7 +50,7 @@ def plot_video_run(run: VideoRun, file: Path, truth: TruePaths | None = None) ->
     for turn in (-half, half):
         end = middle + 10.0 * np.array([np.cos(heading + turn), np.sin(heading + turn)])
         right.plot([middle[0], end[0]], [middle[1], end[1]], color="#888888", linewidth=0.8, linestyle="--")
-    path = np.array([one.planar.position[0] for one in run.pose])
+    path = np.array([item.planar.position[0] for item in run.pose])
     right.plot(path[:, 0], path[:, 1], color="black", linewidth=2.0, label="camera")
     right.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", title="map, last 4 s")
     right.legend(frameon=False, fontsize=8)
@@ -79,21 +79,21 @@ def _draw_map(axis: Any, run: VideoRun, now: list[VideoForecast]) -> None:
         path = np.array(places)
         axis.plot(path[:, 0], path[:, 1], color=COLORS[who % len(COLORS)], label=None if k else "track")
     first = True
-    for one in now:
-        for a, who in enumerate(one.ids.tolist()):
-            path = np.concatenate([one.start[a][None], one.position[:, a]])
+    for item in now:
+        for a, who in enumerate(item.ids.tolist()):
+            path = np.concatenate([item.start[a][None], item.position[:, a]])
             label = "forecast" if first else None
             axis.plot(path[:, 0], path[:, 1], "o:", color=COLORS[who % len(COLORS)], markersize=2.5, label=label)
             first = False
 
 
-def _draw_on_image(axis: Any, run: VideoRun, one: VideoForecast) -> None:
+def _draw_on_image(axis: Any, run: VideoRun, video_forecast: VideoForecast) -> None:
     """Draw a mark below each person and the forecast on the floor."""
-    for a, who in enumerate(one.ids.tolist()):
+    for a, who in enumerate(video_forecast.ids.tolist()):
         color = COLORS[who % len(COLORS)]
         circle = np.linspace(0.0, 2.0 * np.pi, 33)
-        mark = one.start[a] + BODY * np.stack([np.cos(circle), np.sin(circle)], axis=-1)
-        path = np.concatenate([one.start[a][None], one.position[:, a]])
+        mark = video_forecast.start[a] + BODY * np.stack([np.cos(circle), np.sin(circle)], axis=-1)
+        path = np.concatenate([video_forecast.start[a][None], video_forecast.position[:, a]])
         for line, style in ((mark, "-"), (path, ":")):
             pixel = _project(line, run)
             if len(pixel) > 1:

@@ -103,7 +103,7 @@ def sole_ends(rest: Floats, main: Ints) -> Floats:
 def hand_axes(head: Floats, tail: Floats) -> Floats:
     """Return the axes of both hands ``[P, 2, 3, 3]``: columns to the fingers, left, up."""
     every = shapes()
-    found = np.empty((len(head), 2, 3, 3))
+    result = np.empty((len(head), 2, 3, 3))
     for k, side in enumerate("lr"):
         wrist = head[:, every.bone(f"hand_{side}")]
         x = head[:, every.bone(f"fingers_01_{side}")] - wrist
@@ -111,8 +111,8 @@ def hand_axes(head: Floats, tail: Floats) -> Floats:
         x = x / np.linalg.norm(x, axis=-1, keepdims=True)
         y = thumb - x * np.sum(x * thumb, axis=-1, keepdims=True)
         y = y / np.linalg.norm(y, axis=-1, keepdims=True) * (-1.0 if side == "l" else 1.0)
-        found[:, k] = np.stack([x, y, np.cross(x, y)], axis=-1)
-    return found
+        result[:, k] = np.stack([x, y, np.cross(x, y)], axis=-1)
+    return result
 
 
 def _face_vertices(every: Shapes) -> tuple[Ints, ...]:

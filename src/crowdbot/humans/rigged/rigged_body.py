@@ -152,22 +152,22 @@ def read_body(path: Path) -> RiggedBody:
         raise InputError(
             f"cannot read the body {path}: {error.strerror}; crowdbot new body FILE.glb writes one"
         ) from None
-    found = _arrays(data, name)
+    arrays = _arrays(data, name)
     try:
-        about = json.loads(found["about"].tobytes())
+        about = json.loads(arrays["about"].tobytes())
         if about["format"] != FORMAT:
             raise InputError(f"{name} has the format {about['format']!r}; expected {FORMAT!r}")
         levels = tuple(
             RiggedLevel(
-                found[f"rest{k}"].astype(np.float64), found[f"faces{k}"].astype(np.int64), found[f"uv{k}"] / 65535.0,
-                found[f"bones{k}"].astype(np.int64), found[f"weights{k}"].astype(np.float64),
-                found[f"closed{k}"].astype(np.bool_),
+                arrays[f"rest{k}"].astype(np.float64), arrays[f"faces{k}"].astype(np.int64), arrays[f"uv{k}"] / 65535.0,
+                arrays[f"bones{k}"].astype(np.int64), arrays[f"weights{k}"].astype(np.float64),
+                arrays[f"closed{k}"].astype(np.bool_),
             )
             for k in range(LEVELS)
         )  # fmt: skip
         return RiggedBody(
-            name, float(about["height"]), float(about["mass"]), found["head"].astype(np.float64),
-            found["tail"].astype(np.float64), levels, _picture(found["picture"].tobytes(), name),
+            name, float(about["height"]), float(about["mass"]), arrays["head"].astype(np.float64),
+            arrays["tail"].astype(np.float64), levels, _picture(arrays["picture"].tobytes(), name),
         )  # fmt: skip
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise InputError(f"{name} is no body: {type(error).__name__} {str(error)[:80]}") from None
@@ -177,7 +177,7 @@ def _arrays(data: bytes, name: str) -> dict[str, NDArray[Any]]:
     """Return the arrays of a file; objects of Python are refused."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            whole = sum(one.file_size for one in archive.infolist())
+            whole = sum(item.file_size for item in archive.infolist())
             if whole > MOST_VALUES or len(archive.infolist()) > 100:
                 raise InputError(f"{name} holds {whole} bytes in {len(archive.infolist())} parts, which is too much")
         with np.load(io.BytesIO(data), allow_pickle=False) as file:

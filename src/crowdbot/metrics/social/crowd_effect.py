@@ -112,8 +112,8 @@ def _common(run: AgentLog, ghost: AgentLog, person: int, measure: Measure) -> tu
     count = min(len(run.times), len(ghost.times))
     both = run.active[:count, person] & ghost.active[:count, person]
     first, second = (
-        measure(one.times[:count][both], one.position[:count, person][both], one.velocity[:count, person][both])
-        for one in (run, ghost)
+        measure(item.times[:count][both], item.position[:count, person][both], item.velocity[:count, person][both])
+        for item in (run, ghost)
     )
     return first, second
 

@@ -30,13 +30,13 @@ def ospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Flo
     from scipy.optimize import linear_sum_assignment
 
     seen = table.visible_only(cutoff)
-    found = np.zeros(len(seen.truth))
+    result = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
         small, large = sorted(distance.shape)
         a, b = linear_sum_assignment(np.minimum(distance, cutoff) ** order)
         total = float((np.minimum(distance[a, b], cutoff) ** order).sum()) + cutoff**order * (large - small)
-        found[t] = (total / large) ** (1.0 / order) if large else 0.0
-    return found
+        result[t] = (total / large) ** (1.0 / order) if large else 0.0
+    return result
 
 
 def gospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Floats:
@@ -58,18 +58,18 @@ def gospa(table: TrackComparison, cutoff: float = 1.0, order: float = 2.0) -> Fl
     from scipy.optimize import linear_sum_assignment
 
     seen = table.visible_only(cutoff)
-    found = np.zeros(len(seen.truth))
+    result = np.zeros(len(seen.truth))
     for t, distance in enumerate(_present(seen)):
         cost = np.minimum(distance, cutoff) ** order
         a, b = linear_sum_assignment(cost)
         near = distance[a, b] < cutoff
         single = sum(distance.shape) - 2 * int(near.sum())
-        found[t] = math.pow(float(cost[a, b][near].sum()) + 0.5 * cutoff**order * single, 1.0 / order)
-    return found
+        result[t] = math.pow(float(cost[a, b][near].sum()) + 0.5 * cutoff**order * single, 1.0 / order)
+    return result
 
 
 def _present(table: TrackComparison) -> list[Floats]:
     """Return the distances between those present, ``[people, tracks]`` for each instant."""
     distances = table.distances()
-    people, tracks = (~np.isnan(one[..., 0]) for one in (table.truth, table.estimate))
+    people, tracks = (~np.isnan(item[..., 0]) for item in (table.truth, table.estimate))
     return [distance[people[t]][:, tracks[t]] for t, distance in enumerate(distances)]

@@ -126,9 +126,9 @@ class MPCNavigator(Navigator):
             forecast = observation.forecast(seconds=self.horizon, samples=self.samples)
             places, weight = np.repeat(places, forecast.samples, axis=0), forecast.weight[0] / forecast.weight[0].sum()
             knots = forecast.dt * np.arange(forecast.steps + 1)
-            column = {int(one): k for k, one in enumerate(observation.tracks.ids)}
-            for a, one in enumerate(people.ids.tolist()):
-                if (k := column.get(one)) is None or not forecast.valid[0, k]:
+            column = {int(id_): k for k, id_ in enumerate(observation.tracks.ids)}
+            for a, item in enumerate(people.ids.tolist()):
+                if (k := column.get(item)) is None or not forecast.valid[0, k]:
                     continue  # not predicted: constant velocity
                 for s, c in np.ndindex(forecast.samples, 2):
                     track = np.append(people.position[a, c], forecast.position[0, s, :, k, c])

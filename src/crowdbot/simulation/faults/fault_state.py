@@ -79,7 +79,7 @@ class FaultState:
                 lateness += np.where(active, np.rint(self.numbers[:, k, 2] / step).astype(np.int64), 0)
             elif isinstance(fault, FrozenSensor | BlindSensor):
                 silent |= active
-        return live & ~silent, lateness if any(isinstance(one, LateSensor) for _, one in own) else None
+        return live & ~silent, lateness if any(isinstance(item, LateSensor) for _, item in own) else None
 
     def clear_blind(self, sensors: Sequence[MountedSensor], times: Floats) -> None:
         """Forget the readings of the sensors that are blind."""
@@ -110,9 +110,9 @@ class FaultState:
                 continue
             chosen = environments[rows]
             shares = np.array([self.rngs[k][int(e)].random() for e in chosen])
-            found = fault.lose_commands(self.numbers[chosen, k], shares)
-            if found is not None:
-                lost[rows] |= found
+            lose_commands = fault.lose_commands(self.numbers[chosen, k], shares)
+            if lose_commands is not None:
+                lost[rows] |= lose_commands
         return lost
 
     def change_commands(self, command: Floats, times: Floats, radius: float) -> Floats:
@@ -128,14 +128,14 @@ class FaultState:
 
     def orders(self, robot: RobotSpec, ticks: Ints, step: float) -> list[tuple[int, FaultOrder]]:
         """Return the faults that begin or end at the current ticks ``[E]``, with their environments."""
-        found = []
+        result = []
         for k, name in enumerate(self.names):
             now = self.active(k, ticks.astype(np.float64) * step)
             before = self.active(k, (ticks - 1).astype(np.float64) * step) & (ticks > 0)
             for e in np.flatnonzero(now != before).tolist():
                 state = "begin" if now[e] else "end"
-                found.append((e, FaultOrder(robot=robot.name, fault=name, state=state)))
-        return found
+                result.append((e, FaultOrder(robot=robot.name, fault=name, state=state)))
+        return result
 
     def _of_sensor(self, name: str) -> list[tuple[int, SensorFault]]:
         return [

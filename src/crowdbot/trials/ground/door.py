@@ -71,6 +71,6 @@ class Door:
 def _times(text: str) -> tuple[float, ...]:
     """Return the numbers of a text, which must increase."""
     times = tuple(parse_number(word) for word in text.split())
-    if list(times) != sorted(set(times)) or any(one < 0.0 for one in times):
+    if list(times) != sorted(set(times)) or any(time < 0.0 for time in times):
         raise InputError("must increase, from 0 s on")
     return times

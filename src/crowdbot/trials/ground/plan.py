@@ -45,15 +45,17 @@ def floor_plan(stage: Any, shares: Mapping[str, float] | None = None) -> list[Pa
             turn = 0.0 if part.front > part.rear else math.pi
             arrow = _arrow(part.x, part.y, part.heading + turn, part.length, part.width)
             found.append(Path2D(arrow, GROUND_COLOR, 1.0))
-    for one in stage.ground:
-        if isinstance(one, Stairs):
-            found.append(Path2D(_arrow(one.x, one.y, one.heading, one.steps * one.tread, one.width), GROUND_COLOR, 1.0))
+    for item in stage.ground:
+        if isinstance(item, Stairs):
+            found.append(
+                Path2D(_arrow(item.x, item.y, item.heading, item.steps * item.tread, item.width), GROUND_COLOR, 1.0)
+            )
     starts = {door.name: float(door.open and door.opening in ("order", "schedule")) for door in stage.doors}
     for leaf in physical.doors:
         share = (shares or {}).get(leaf.name, starts[leaf.name])
         side = -1.0 if share < 0.0 else 1.0
         way = np.linspace(0.0, side, 17)
-        arc = leaf.line(0.0) if leaf.kind == "sliding" else np.stack([leaf.line(float(one))[1] for one in way])
+        arc = leaf.line(0.0) if leaf.kind == "sliding" else np.stack([leaf.line(float(item))[1] for item in way])
         found += [Path2D(arc, DOOR_COLOR, 0.7, 0.7), Path2D(leaf.line(float(share)), DOOR_COLOR, 3.0)]
     return found
 

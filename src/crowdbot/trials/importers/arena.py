@@ -98,15 +98,15 @@ def _map(scene: ImportedScene, whole: dict[str, Any]) -> str:
     name = str(name).strip()[:200]
     folder = scene.path.resolve().parent
     names = [name] if name.endswith((".yaml", ".yml")) else [f"{name}/map.yaml", f"{name}.yaml"]
-    for one in (*names, *(file.rpartition("/")[2] for file in names)):
+    for item in (*names, *(file.rpartition("/")[2] for file in names)):
         try:
-            map_files(one, folder, trust=False)
+            map_files(item, folder, trust=False)
         except InputError:
             continue
-        scene.note(f"the stage reads {one[:80]} in the folder of the trial: write the trial beside the scenario")
-        return one
+        scene.note(f"the stage reads {item[:80]} in the folder of the trial: write the trial beside the scenario")
+        return item
     scene.note(
-        f"the map {name[:60]!r} is not beside the scenario as {' or '.join(one[:80] for one in names)}: the stage has"
+        f"the map {name[:60]!r} is not beside the scenario as {' or '.join(name[:80] for name in names)}: the stage has"
         " no walls, add them"
     )
     return ""

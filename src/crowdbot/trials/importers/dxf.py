@@ -237,14 +237,14 @@ class _Reader:
         self.blocks = _blocks(_entities(path, sections.get("BLOCKS", [])))
         self.inserted = 0
         tables = _entities(path, sections.get("TABLES", []))
-        self.hidden = {one.text(2) for one in tables if one.kind == "LAYER" and self._is_hidden(one)}
+        self.hidden = {table.text(2) for table in tables if table.kind == "LAYER" and self._is_hidden(table)}
         self.scale = self._unit(sections.get("HEADER", []), unit)
         self.corners = 0
 
     def trial(self, layers: Collection[str]) -> Trial:
         """Return the trial."""
         shapes = list(self._placed(self.entities, "", BlockPlacement(), 0))
-        known = sorted({one.layer for one in shapes if one.entity.kind in KINDS})
+        known = sorted({shape.layer for shape in shapes if shape.entity.kind in KINDS})
         for layer in layers:
             if layer not in known:
                 some = ", ".join(known[:20]) or "none"
@@ -255,11 +255,11 @@ class _Reader:
                 why = "off or frozen" if layer in self.hidden and not layers else "not chosen"
                 self.notes[f"layer {layer[:60]}: {why}"] = None
         rings: dict[Ring, None] = {}
-        for one in shapes:
-            if one.entity.kind not in KINDS:
-                self.notes[f"entities {one.entity.kind[:40]} are not imported"] = None
-            elif one.layer in chosen:
-                ring = self._ring(one)
+        for shape in shapes:
+            if shape.entity.kind not in KINDS:
+                self.notes[f"entities {shape.entity.kind[:40]} are not imported"] = None
+            elif shape.layer in chosen:
+                ring = self._ring(shape)
                 rings |= dict.fromkeys([ring] if len(set(ring)) > 1 else [])
         if not rings:
             raise TrialError(f"{self.path}: there are no lines, polylines, arcs or circles on the layers to read")
@@ -392,18 +392,18 @@ class _Reader:
         begin, end = (0.0, 360.0) if one.kind == "CIRCLE" else (self._value(one, 50), self._value(one, 51))
         return self._points(placed, arc_points(center, radius, begin, end, unit), side)
 
-    def _polyline(self, one: DxfEntity, unit: float) -> list[tuple[float, float]]:
+    def _polyline(self, dxf_entity: DxfEntity, unit: float) -> list[tuple[float, float]]:
         """Return the points of a polyline, with arcs for its bulges."""
-        flags = int(self._value(one, 70, 0.0))
-        if one.kind == "POLYLINE":
+        flags = int(self._value(dxf_entity, 70, 0.0))
+        if dxf_entity.kind == "POLYLINE":
             if flags & (16 | 64):
                 self.notes["polygon meshes are not imported"] = None
                 return []
-            spots = [part for part in one.vertices if not int(self._value(part, 70, 0.0)) & 16]
+            spots = [part for part in dxf_entity.vertices if not int(self._value(part, 70, 0.0)) & 16]
             rows = [(self._value(part, 10), self._value(part, 20), self._value(part, 42, 0.0)) for part in spots]
         else:
             rows = []
-            for group in one.groups:
+            for group in dxf_entity.groups:
                 if group.code == 10:
                     rows.append((self._number(group), 0.0, 0.0))
                 elif group.code in (20, 42) and rows:
@@ -412,9 +412,9 @@ class _Reader:
                     rows[-1] = (x, value, bulge) if group.code == 20 else (x, y, value)
         return bulge_points(rows, bool(flags & 1), unit)
 
-    def _side(self, one: DxfEntity) -> float:
+    def _side(self, dxf_entity: DxfEntity) -> float:
         """Return 1, -1 for an entity that is drawn from below, 0 for one that is not horizontal."""
-        x, y, z = (self._value(one, code, otherwise) for code, otherwise in ((210, 0.0), (220, 0.0), (230, 1.0)))
+        x, y, z = (self._value(dxf_entity, code, otherwise) for code, otherwise in ((210, 0.0), (220, 0.0), (230, 1.0)))
         if abs(x) > 1e-6 or abs(y) > 1e-6:
             self.notes["entities that are not horizontal are not imported"] = None
             return 0.0
@@ -434,13 +434,13 @@ class _Reader:
             raise TrialError(f"{self.path}: the walls have more than {MOST_CORNERS} corners; choose layers")
         return tuple(found)
 
-    def _value(self, one: DxfEntity, code: int, otherwise: float | None = None) -> float:
-        found = next((group for group in one.groups if group.code == code), None)
-        if found is None:
+    def _value(self, dxf_entity: DxfEntity, code: int, otherwise: float | None = None) -> float:
+        group = next((group for group in dxf_entity.groups if group.code == code), None)
+        if group is None:
             if otherwise is None:
-                raise TrialError(f"{self.path}:{one.line}: {one.kind} lacks the group {code}")
+                raise TrialError(f"{self.path}:{dxf_entity.line}: {dxf_entity.kind} lacks the group {code}")
             return otherwise
-        return self._number(found)
+        return self._number(group)
 
     def _number(self, group: DxfGroup) -> float:
         try:
@@ -454,48 +454,48 @@ class _Reader:
 
 def _sections(path: Path, groups: list[DxfGroup]) -> dict[str, list[DxfGroup]]:
     """Return the groups of each section."""
-    found: dict[str, list[DxfGroup]] = {}
+    sections: dict[str, list[DxfGroup]] = {}
     now: list[DxfGroup] | None = None
     for k, group in enumerate(groups):
         if group.code == 0 and group.value.strip() == "SECTION":
             name = groups[k + 1].value.strip() if k + 1 < len(groups) and groups[k + 1].code == 2 else ""
-            now = found.setdefault(name, [])
+            now = sections.setdefault(name, [])
         elif group.code == 0 and group.value.strip() == "ENDSEC":
             now = None
         elif now is not None:
             now.append(group)
-    if "ENTITIES" not in found:
+    if "ENTITIES" not in sections:
         raise TrialError(f"{path} has no section ENTITIES: it is not a drawing in DXF")
-    return found
+    return sections
 
 
 def _blocks(entities: Sequence[DxfEntity]) -> dict[str, tuple[DxfEntity, list[DxfEntity]]]:
     """Return the head and the entities of each block by name."""
-    found: dict[str, tuple[DxfEntity, list[DxfEntity]]] = {}
+    blocks: dict[str, tuple[DxfEntity, list[DxfEntity]]] = {}
     now: list[DxfEntity] | None = None
     for entity in entities:
         if entity.kind == "BLOCK":
-            now = found.setdefault(entity.text(2), (entity, []))[1]
+            now = blocks.setdefault(entity.text(2), (entity, []))[1]
         elif entity.kind == "ENDBLK":
             now = None
         elif now is not None:
             now.append(entity)
-    return found
+    return blocks
 
 
 def _entities(path: Path, groups: list[DxfGroup]) -> list[DxfEntity]:
     """Return the entities of a section; vertices belong to their polyline."""
-    found: list[DxfEntity] = []
+    dxf_entities: list[DxfEntity] = []
     now: DxfEntity | None = None
     for group in groups:
         if group.code == 0:
             now = DxfEntity(group.value.strip(), group.line)
             if now.kind not in PARTS:
-                found.append(now)
-            elif found and now.kind == "VERTEX" and found[-1].kind == "POLYLINE":
-                found[-1].vertices.append(now)
-            if len(found) > MOST_ENTITIES:
+                dxf_entities.append(now)
+            elif dxf_entities and now.kind == "VERTEX" and dxf_entities[-1].kind == "POLYLINE":
+                dxf_entities[-1].vertices.append(now)
+            if len(dxf_entities) > MOST_ENTITIES:
                 raise TrialError(f"{path}:{group.line}: more than {MOST_ENTITIES} entities are too many")
         elif now is not None:
             now.groups.append(group)
-    return found
+    return dxf_entities

@@ -77,7 +77,7 @@ class _Reader:
         if not isinstance(names, list) or not names:
             raise TrialError(f"{self.path}: agents must be a list of names, and there must be at least one")
         blocks = [self._block(self.content, str(name), "agent") for name in names]
-        agents = tuple(self._agent(str(name), one) for name, one in zip(names, blocks, strict=True))
+        agents = tuple(self._agent(str(name), block) for name, block in zip(names, blocks, strict=True))
         if self.content.get("map"):
             self.notes[f"the map {str(self.content['map'])[:40]}: the stage has no walls, add them"] = None
         self.notes["the robot is not in the file: people react to the robots that you add"] = None
@@ -154,21 +154,21 @@ class _Reader:
 
     def _custom(self, name: str, kind: str, about: dict[Any, Any], speed: float, radius: float) -> dict[str, Any]:
         """Return the parameters of a reaction that a behaviour sets."""
-        found: dict[str, Any] = {}
+        custom: dict[str, Any] = {}
         duration, slow, far = (self._number(about, key, name, 0.0) for key in ("duration", "vel", "dist"))
         if duration > 0.0:
-            found["duration"] = min(86_400.0, duration)
+            custom["duration"] = min(86_400.0, duration)
         if slow > 0.0 and kind in ("scared", "curious"):
-            found["speed"] = min(1.3, round(slow / speed, 6))
+            custom["speed"] = min(1.3, round(slow / speed, 6))
         if far > 0.0 and kind in ("curious", "block"):
-            found["gap"] = min(100.0, max(0.0, round(far - radius - ROBOT_RADIUS, 6)))
-        return found
+            custom["gap"] = min(100.0, max(0.0, round(far - radius - ROBOT_RADIUS, 6)))
+        return custom
 
     def _block(self, values: Mapping[Any, Any], key: Any, what: str) -> dict[Any, Any]:
-        found = values.get(key, values.get(str(key)))
-        if not isinstance(found, dict):
+        block = values.get(key, values.get(str(key)))
+        if not isinstance(block, dict):
             raise TrialError(f"{self.path}: {what} {str(key)[:40]!r} is missing, or not a mapping")
-        return found
+        return block
 
     def _number(self, values: dict[Any, Any], key: str, place: str, otherwise: float | None = None) -> float:
         value = values.get(key, otherwise)

@@ -53,7 +53,7 @@ def import_jupedsim(path: str | Path) -> ImportedTrial:
     with scene.named_errors():
         if root.tag == "geometry":
             return _Reader(scene, root).trial(None)
-        name = next((one for one in _all(root, "geometry")), None)
+        name = next((item for item in _all(root, "geometry")), None)
         if root.tag != "JuPedSim" or name is None:
             raise scene.error("is not a project of JuPedSim: it has no <geometry>")
         file = (name.stray.strip() or name.attributes.get("file", ""))[:200]
@@ -109,7 +109,7 @@ class _Reader:
         return self._number(part.attributes.get(key), part, key)
 
     def _vertices(self, part: Element) -> list[Spot]:
-        return [(self._value(one, "px"), self._value(one, "py")) for one in part.each("vertex")]
+        return [(self._value(item, "px"), self._value(item, "py")) for item in part.each("vertex")]
 
     def _subroom(self, room: Element, subroom: Element) -> None:
         """Add the walls and obstacles of a subroom."""
@@ -155,11 +155,11 @@ class _Reader:
         for part in _all(project, "source"):
             self.scene.note(f"the source {part.attributes.get('id', '')[:20]!r} is not imported")
         goals = {goal.attributes.get("id", ""): goal for goal in _all(project, "goal")}
-        sets = {one.attributes.get("agent_parameter_id", ""): one for one in _all(project, "agent_parameters")}
+        sets = {item.attributes.get("agent_parameter_id", ""): item for item in _all(project, "agent_parameters")}
         if sets:
             self.scene.note("parameters of operational models other than the speed v0: the model has its defaults")
         count = 0
-        for group in [one for part in _all(project, "agents_distribution") for one in part.each("group")]:
+        for group in [item for part in _all(project, "agents_distribution") for item in part.each("group")]:
             name = f"group {group.attributes.get('group_id', str(len(self.scene.spawners) + 1))[:20]}"
             number = int(self._value(group, "number"))
             if number < 1:
@@ -169,7 +169,7 @@ class _Reader:
             if count > MOST_PEOPLE:
                 raise self.scene.error(f"more than {MOST_PEOPLE} people are too many")
             if extra := sorted(set(group.attributes) - GROUP):
-                self.scene.note(f"{name}: not imported are {', '.join(one[:30] for one in extra[:12])}")
+                self.scene.note(f"{name}: not imported are {', '.join(item[:30] for item in extra[:12])}")
             stops = self._stops(name, group, goals)
             speed = self._speed(sets.get(group.attributes.get("agent_parameter_id", "")))
             if number == 1 and {"startX", "startY"} <= set(group.attributes):
@@ -191,7 +191,9 @@ class _Reader:
         """The goal of a group, or the nearest exit."""
         id = group.attributes.get("goal_id", "").strip()
         if id and id != OUTSIDE:
-            polygon = next((one for goal in [goals[id]] for one in goal.each("polygon")), None) if id in goals else None
+            polygon = (
+                next((item for goal in [goals[id]] for item in goal.each("polygon")), None) if id in goals else None
+            )
             if polygon is not None:
                 spots = self._vertices(polygon)
                 spots = spots[:-1] if len(spots) > 1 and spots[0] == spots[-1] else spots

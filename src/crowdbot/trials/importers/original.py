@@ -155,13 +155,13 @@ class _Reader:
         """Return the trial."""
         stage = self._stage(root)
         when, duration = self._end(root)
-        walkers = [self._walker(one) for one in _kinds(root, "agents", "agent")]
+        walkers = [self._walker(kind) for kind in _kinds(root, "agents", "agent")]
         crowd, parameters = crowds_of(walkers, self.note)
         ways: dict[Journey, str] = {}
         agents = []
         for k, walker in enumerate(walkers):
             agents.append(self._agent(k, walker, ways, parameters[k], isinstance(crowd, Crowds)))
-        robots = [self._robot(k, one, when) for k, one in enumerate(_kinds(root, "robots", "robot"))]
+        robots = [self._robot(k, kind, when) for k, kind in enumerate(_kinds(root, "robots", "robot"))]
         self._rest(root)
         return Trial(
             name=(self.name.strip() or "imported")[:80],
@@ -184,11 +184,11 @@ class _Reader:
             self.note(f"stage {mesh[:40]!r}: only the walls and pillars in the trial are imported")
         walls: list[Wall] = []
         solids: list[Obstacle] = []
-        for one in _kinds(root, "obstacles", "obstacle"):
-            for line in _all(one, "Line"):
+        for kind in _kinds(root, "obstacles", "obstacle"):
+            for line in _all(kind, "Line"):
                 ends = [(_number(line, f"x{k}", 0.0), -_number(line, f"y{k}", 0.0)) for k in (1, 2)]
                 self._add_wall(ends, _number(line, "thickness", 0.0), walls, solids)
-            for spot in _all(one, "Point"):
+            for spot in _all(kind, "Point"):
                 x, y = _number(spot, "x1", 0.0), -_number(spot, "y1", 0.0)
                 solids.append(Obstacle(_disc(x, y, max(0.05, _number(spot, "thickness", 0.5) / 2.0))))
         return Stage(walls=tuple(walls), obstacles=tuple(solids))
@@ -210,9 +210,9 @@ class _Reader:
     def _end(self, root: Element) -> tuple[list[EndCondition], float]:
         """Return the end conditions and the duration."""
         when, duration = [], math.inf
-        for one in _all(root, "condition"):
-            what, test = one.attributes.get("parameter", "time"), one.attributes.get("test", "less")
-            value = _number(one, "value", 0.0)
+        for item in _all(root, "condition"):
+            what, test = item.attributes.get("parameter", "time"), item.attributes.get("test", "less")
+            value = _number(item, "value", 0.0)
             if what == "time" and test == "greater" and value > 0.0:
                 duration = min(duration, value)
             elif what in ("x", "y") and test in ("less", "greater"):
@@ -228,10 +228,10 @@ class _Reader:
             duration = NEVER
         return when, min(duration, 86_400.0)
 
-    def _walker(self, one: Element) -> Walker:
-        law = _inner(one, "controlLaw") or Element("LawFake", line=one.line)
-        sim = _inner(one, "controlSim")
-        return Walker(one, law, sim, max(0.05, _number(one, "radius", 0.33)))
+    def _walker(self, element: Element) -> Walker:
+        law = _inner(element, "controlLaw") or Element("LawFake", line=element.line)
+        sim = _inner(element, "controlSim")
+        return Walker(element, law, sim, max(0.05, _number(element, "radius", 0.33)))
 
     def _agent(self, k: int, walker: Walker, ways: dict[Journey, str], own: dict[str, object], several: bool) -> Agent:
         one, law = walker.element, walker.law
@@ -271,12 +271,12 @@ class _Reader:
             ways[Journey(name=name, stops=stops, then=then)] = name
         return name
 
-    def _robot(self, k: int, one: Element, when: list[EndCondition]) -> RobotSpec:
+    def _robot(self, k: int, element: Element, when: list[EndCondition]) -> RobotSpec:
         from crowdbot.navigation import ORCANavigator
         from crowdbot.world import DifferentialDrive
 
-        x, y = _place(_find(one, "Position"))
-        heading = _heading(_find(one, "Rotation"))
+        x, y = _place(_find(element, "Position"))
+        heading = _heading(_find(element, "Rotation"))
         crossed = next((w.above for w in when if w.what == "x" and w.above is not None), None)
         if crossed is not None and k == 0:
             goal = RobotGoal(crossed + 0.5, y, 0.5)
@@ -290,8 +290,8 @@ class _Reader:
             x=x,
             y=y,
             heading=heading,
-            radius=min(10.0, max(0.05, _number(one, "radius", 0.33))),
-            visible=one.attributes.get("in_sim", "true").lower() == "true",
+            radius=min(10.0, max(0.05, _number(element, "radius", 0.33))),
+            visible=element.attributes.get("in_sim", "true").lower() == "true",
             goal=goal,
             drive=DifferentialDrive(),
             navigator=ORCANavigator(),
@@ -300,9 +300,9 @@ class _Reader:
     def _rest(self, root: Element) -> None:
         """Note the elements that are not imported."""
         player = _find(root, "player")
-        for one in player.children if player else ():
-            walks = one.tag == "TrialRegularPlayer"
-            self.note(f"the player {one.tag}: " + ("a participant joins with a headset" if walks else "a camera only"))
+        for item in player.children if player else ():
+            walks = item.tag == "TrialRegularPlayer"
+            self.note(f"the player {item.tag}: " + ("a participant joins with a headset" if walks else "a camera only"))
         for word, what in (
             ("config", "data of plug-ins"),
             ("screenRecorder", "pictures of the screen"),
@@ -327,11 +327,11 @@ def _walk(element: Element) -> Iterator[Element]:
 
 
 def _all(element: Element, tag: str) -> list[Element]:
-    return [one for one in _walk(element) if one.tag == tag]
+    return [item for item in _walk(element) if item.tag == tag]
 
 
 def _find(element: Element, tag: str) -> Element | None:
-    return next((one for one in element.children if one.tag == tag), None)
+    return next((child for child in element.children if child.tag == tag), None)
 
 
 def _inner(element: Element, tag: str) -> Element | None:

@@ -97,7 +97,7 @@ def _walk_of(crowd: RecordedPeople, person: int, duration: float) -> Walk:
     if not walks:
         ids = sorted({walk.person for walk in crowd.walks(duration)})
         raise InputError(f"nobody in {crowd.data} has the id {person}; ids go from {ids[0]} to {ids[-1]}")
-    walk = max(walks, key=lambda one: float(one.time[-1] - one.time[0]))
+    walk = max(walks, key=lambda walk: float(walk.time[-1] - walk.time[0]))
     if float(np.hypot(*(walk.position[-1] - walk.position[0]))) < 1.0:
         raise InputError(f"person {person} of {crowd.data} ends less than 1 m from the start, which is too short")
     return walk

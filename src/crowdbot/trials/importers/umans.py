@@ -83,16 +83,16 @@ class _Reader:
 
     def trial(self, root: Element) -> Trial:
         """Return the trial."""
-        for one in root.children:
-            if one.tag not in ("World", "Agents", "Policies", "Obstacles"):
-                self.notes[f"<{one.tag[:40]}> is not imported"] = None
-        world = next((one for one in root.children if one.tag == "World"), Element("World"))
+        for child in root.children:
+            if child.tag not in ("World", "Agents", "Policies", "Obstacles"):
+                self.notes[f"<{child.tag[:40]}> is not imported"] = None
+        world = next((child for child in root.children if child.tag == "World"), Element("World"))
         if world.attributes.get("type", "Infinite") != "Infinite":
             self.notes["the world is infinite here, not a torus"] = None
         names, crowd = self._crowds(self._block(root, "Policies"))
         agents = self._agents(self._block(root, "Agents"), names, isinstance(crowd, Crowds))
         solids = [*self._block(root, "Obstacles"), *self._block(world, "Obstacles")]
-        rings = [_corners(one) for one in solids if one.tag == "Obstacle"]
+        rings = [_corners(solid) for solid in solids if solid.tag == "Obstacle"]
         step = min(1.0, max(0.001, number_of(root, "delta_time", 0.1)))
         return Trial(
             name=(self.path.stem.strip() or "imported")[:80],
@@ -107,7 +107,7 @@ class _Reader:
 
     def _block(self, parent: Element, tag: str) -> list[Element]:
         """Return the children of a block, which may be in another file."""
-        block = next((one for one in parent.children if one.tag == tag), None)
+        block = next((child for child in parent.children if child.tag == tag), None)
         if block is None:
             return []
         file = block.attributes.get("file")
@@ -118,7 +118,7 @@ class _Reader:
         found: dict[str, CrowdModel] = {}
         names = {}
         for policy in policies:
-            costs = [one.attributes.get("name", "") for one in policy.children if one.tag == "costfunction"]
+            costs = [child.attributes.get("name", "") for child in policy.children if child.tag == "costfunction"]
             known = [COSTS[cost] for cost in costs if cost in COSTS]
             for cost in costs:
                 if cost not in COSTS and cost not in GOAL_COSTS:
@@ -137,14 +137,14 @@ class _Reader:
 
     def _agents(self, rows: list[Element], names: dict[str, str], several: bool) -> list[Agent]:
         agents = []
-        for k, one in enumerate(row for row in rows if row.tag == "Agent"):
-            inner = {child.tag: child for child in one.children}
+        for k, item in enumerate(row for row in rows if row.tag == "Agent"):
+            inner = {child.tag: child for child in item.children}
             if "pos" not in inner:
-                raise TrialError(f"line {one.line}: <Agent> lacks <pos>")
+                raise TrialError(f"line {item.line}: <Agent> lacks <pos>")
             goal = inner.get("goal")
             policy = inner["Policy"].attributes.get("id", "0") if "Policy" in inner else "0"
-            leaves = one.attributes.get("remove_at_goal", "false").lower() in ("true", "1")
-            if number_of(one, "start_time", 0.0) > 0.0:
+            leaves = item.attributes.get("remove_at_goal", "false").lower() in ("true", "1")
+            if number_of(item, "start_time", 0.0) > 0.0:
                 self.notes["start times: all agents are there from the beginning"] = None
             agents.append(
                 Agent(
@@ -152,8 +152,8 @@ class _Reader:
                     x=number_of(inner["pos"], "x"),
                     y=number_of(inner["pos"], "y"),
                     goal=Points() if goal is None else Points.of([(number_of(goal, "x"), number_of(goal, "y"))]),
-                    speed=min(10.0, max(0.05, number_of(one, "pref_speed", SPEED))),
-                    radius=min(5.0, max(0.05, number_of(one, "rad", RADIUS))),
+                    speed=min(10.0, max(0.05, number_of(item, "pref_speed", SPEED))),
+                    radius=min(5.0, max(0.05, number_of(item, "rad", RADIUS))),
                     arrival="leave" if leaves else "stay",
                     crowd=names.get(policy, "") if several else "",
                 )
@@ -164,7 +164,9 @@ class _Reader:
 
 
 def _corners(obstacle: Element) -> list[tuple[float, float]]:
-    points = [(number_of(one, "x"), number_of(one, "y")) for one in obstacle.children if one.tag.lower() == "point"]
+    points = [
+        (number_of(child, "x"), number_of(child, "y")) for child in obstacle.children if child.tag.lower() == "point"
+    ]
     if len(points) < 3:
         raise TrialError(f"line {obstacle.line}: <Obstacle> has {len(points)} points, it needs at least 3")
     return points

@@ -73,7 +73,7 @@ def draw_layout(
     whole = np.array([_wrapped(seed) for seed in seeds], dtype=np.int64)
     states = stream_states(whole, [("spawner", number, "layout")])[:, 0].copy()
     drawn = LayoutDraw(np.zeros((E, N, 2)), np.zeros((E, N, 2)), np.zeros(E, dtype=np.int64))
-    begin, end = (np.require(one, np.float64, ["C", "W"]) for one in (starts, goals))
+    begin, end = (np.require(item, np.float64, ["C", "W"]) for item in (starts, goals))
     sizes = np.require(radius, np.float64, ["C", "W"])
     _draw_all(states, spawner.layout == "circle", box, sizes, begin, end, *drawn)
     return drawn

@@ -94,8 +94,8 @@ def range_remarks(trial: Trial) -> list[str]:
     for bounds in ranges.values():
         if density > bounds.max_density:
             result.append(
-                f"crowd model {bounds.model} is used at {density:.2g} people/m2, beyond its range of {bounds.max_density:g}:"
-                f" {bounds.why} ({bounds.density_source})"
+                f"crowd model {bounds.model} is used at {density:.2g} people/m2, beyond its range of"
+                f" {bounds.max_density:g}: {bounds.why} ({bounds.density_source})"
             )
         if step > bounds.max_step + STEP_TOLERANCE:
             result.append(

@@ -153,7 +153,7 @@ class EditorDesk(Desk):
         """Remove elements."""
 
         def edit(document: XmlDocument) -> XmlDocument:
-            for path in sorted((tuple(one) for one in paths), reverse=True):
+            for path in sorted((tuple(path) for path in paths), reverse=True):
                 document = document.remove(path)
             return document
 
@@ -274,7 +274,7 @@ def _tree(node: XmlNode) -> dict[str, Any]:
         "tag": node.tag,
         "line": node.line,
         "attributes": node.attributes,
-        "children": [_tree(one) for one in node.children],
+        "children": [_tree(child) for child in node.children],
     }
 
 
@@ -295,18 +295,18 @@ def agents_of_spawner(document: XmlDocument, path: Sequence[int], trial: Trial, 
         raise InputError(f"<{node.tag}> is not a spawner")
     if trial.sweeps:
         raise TrialError("the trial has sweeps; take one of its variants")
-    number = [one for one in document.root.children if one.tag == "spawner"].index(node)
+    number = [child for child in document.root.children if child.tag == "spawner"].index(node)
     spawner = trial.spawners[number]
     people, _ = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, avatars=trial.avatars)
-    owners = [people.owners[int(one)] for one in people.owner]
+    owners = [people.owners[int(item)] for item in people.owner]
     walking = [owner for owner in owners if not isinstance(owner, Avatar)]
     agents = expand_spawners(trial, seed).agents
     mine = tuple(agent for agent, owner in zip(agents, walking, strict=True) if owner is spawner)
     text = trial_xml(dataclasses.replace(trial, agents=mine, spawners=()))
     source = XmlDocument(text)
-    for one in source.root.children:
-        if one.tag == "agent":
-            document = document.insert((), source.text[one.begin : one.end])
+    for child in source.root.children:
+        if child.tag == "agent":
+            document = document.insert((), source.text[child.begin : child.end])
     return document.remove(path)
 
 
@@ -320,9 +320,9 @@ def spawner_of_agents(document: XmlDocument, paths: Sequence[Sequence[int]]) -> 
         InputError: an element is not an agent, or there is none.
     """
     nodes = [document.node(path) for path in paths]
-    if not nodes or any(one.tag != "agent" for one in nodes):
+    if not nodes or any(node.tag != "agent" for node in nodes):
         raise InputError("choose one or more agents")
-    rows = [one.attributes for one in nodes]
+    rows = [node.attributes for node in nodes]
     try:
         starts = np.array([[float(row["x"]), float(row["y"])] for row in rows])
         goals = [point for row in rows for point in Points.parse(row.get("goal") or row.get("goal-zone") or "")]
@@ -334,7 +334,7 @@ def spawner_of_agents(document: XmlDocument, paths: Sequence[Sequence[int]]) -> 
     for name in SAME:
         if len(values := {row.get(name) for row in rows}) == 1 and (value := values.pop()) is not None:
             words[name] = value
-    for path in sorted((tuple(one) for one in paths), reverse=True):
+    for path in sorted((tuple(path) for path in paths), reverse=True):
         document = document.remove(path)
     document = document.insert((), "<spawner/>")
     last = (len(document.root.children) - 1,)
@@ -407,9 +407,9 @@ def problems_at_elements(document: XmlDocument | None, problems: list[str]) -> l
     """Return each problem with its line and the path of its element, None if it has none."""
     rows = []
     for sentence in problems:
-        found = MESSAGE.search(sentence)
-        line = int(found[1]) if found else None
-        path = document.path_at(line, found[2] or "") if document and found and line else None
+        match = MESSAGE.search(sentence)
+        line = int(match[1]) if match else None
+        path = document.path_at(line, match[2] or "") if document and match and line else None
         rows.append({"message": sentence, "line": line, "path": None if path is None else list(path)})
     return rows
 
@@ -430,7 +430,7 @@ def start_and_ways(trial: Trial, seed: int) -> dict[str, Any]:
         "seed": seed,
         "people": np.round(people.position, 3).tolist(),
         "radii": np.round(people.radius, 3).tolist(),
-        "ways": [_way(planner, *one) for one in ends] if planner else [],
+        "ways": [_way(planner, *end) for end in ends] if planner else [],
     }
 
 

@@ -49,8 +49,8 @@ class XmlNode:
     def each(self) -> Iterator[XmlNode]:
         """Yield this element and all elements inside, in the order of the text."""
         yield self
-        for one in self.children:
-            yield from one.each()
+        for child in self.children:
+            yield from child.each()
 
 
 class XmlDocument:
@@ -82,12 +82,12 @@ class XmlDocument:
         Raises:
             InputError: there is no such element.
         """
-        found = self.root
+        xml_node = self.root
         for number in path:
-            if not isinstance(number, int) or not 0 <= number < len(found.children):
-                raise InputError(f"the element at {list(path)} does not exist in <{found.tag}>")
-            found = found.children[number]
-        return found
+            if not isinstance(number, int) or not 0 <= number < len(xml_node.children):
+                raise InputError(f"the element at {list(path)} does not exist in <{xml_node.tag}>")
+            xml_node = xml_node.children[number]
+        return xml_node
 
     def set(self, path: Sequence[int], name: str, value: str | None) -> XmlDocument:
         """Return a document with another value of an attribute; None removes it.
@@ -165,7 +165,7 @@ class XmlDocument:
             if node.line == line and tag in ("", node.tag):
                 return path
             return next(
-                (found for i, one in enumerate(node.children) if (found := find(one, (*path, i))) is not None), None
+                (found for i, child in enumerate(node.children) if (found := find(child, (*path, i))) is not None), None
             )
 
         return find(self.root, ())
@@ -191,9 +191,9 @@ class XmlDocument:
                 continue
             line, counted = line + self.text.count("\n", counted, token.start()), token.start()
             node = XmlNode(tag, token.start(), token.end(), token.end(), bool(token.group("empty")), line)
-            for one in ATTRIBUTE.finditer(token.group("rest")):
-                begin, end = one.span("value")
-                node.values[one["name"]] = (token.start("rest") + begin + 1, token.start("rest") + end - 1)
+            for item in ATTRIBUTE.finditer(token.group("rest")):
+                begin, end = item.span("value")
+                node.values[item["name"]] = (token.start("rest") + begin + 1, token.start("rest") + end - 1)
             if stack:
                 stack[-1].children.append(node)
             root = root or node
@@ -209,8 +209,8 @@ def _decode(node: XmlNode, element: Element) -> None:
     if node.tag != element.tag or len(node.children) != len(element.children):
         raise InputError(f"<{element.tag}> in line {element.line} is written in a way that the editor cannot change")
     node.attributes, node.line = dict(element.attributes), element.line
-    for one, other in zip(node.children, element.children, strict=True):
-        _decode(one, other)
+    for child, other in zip(node.children, element.children, strict=True):
+        _decode(child, other)
 
 
 def _quoted(value: str, mark: str) -> str:

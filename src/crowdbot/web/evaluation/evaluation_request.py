@@ -63,14 +63,14 @@ class EvaluationRequest:
             InputError: a trial, navigator, robot, seed or metric is wrong, or there are more than 100 000 runs.
         """
         check_text(self.navigators, "navigators")
-        found = self.load_trials(folder)
+        trials = self.load_trials(folder)
         statistics = [parse_statistic(check_text(name, "metrics")) for name in self.metrics]
-        families = (*LOG_FAMILIES, *families_of([one.metric for one in statistics]))
+        families = (*LOG_FAMILIES, *families_of([statistic.metric for statistic in statistics]))
         methods = parse_methods(self.navigators)
         methods = with_safety(methods) if self.safety else methods
-        own = self._robot_folders(found, folder)
+        own = self._robot_folders(trials, folder)
         plan = EvaluationPlan(
-            found,
+            trials,
             methods,
             self._robot_names,
             parse_seeds(self.seeds),
@@ -93,14 +93,16 @@ class EvaluationRequest:
         if not self.trials:
             raise InputError("an evaluation needs a trial")
         return [
-            load_builtin_trial(one, folder=folder) if one in builtin_trials() else load_trial(_inside(folder, one))
-            for one in self.trials
+            load_builtin_trial(trial, folder=folder)
+            if trial in builtin_trials()
+            else load_trial(_inside(folder, trial))
+            for trial in self.trials
         ]
 
     def _robot_folders(self, trials: Sequence[Trial], folder: Path) -> list[Path]:
         """Return the robot folders that the robots may name; an address outside the folder is an error."""
         check_text(self.robots, "robots")
-        homes = dict.fromkeys([folder, *(one.folder or folder for one in trials)])
+        homes = dict.fromkeys([folder, *(trial.folder or folder for trial in trials)])
         found = []
         for name, home in itertools.product(filter(None, self._robot_names), homes):
             place = (home / name).resolve()
@@ -112,7 +114,7 @@ class EvaluationRequest:
 
     def command(self, folder: Path) -> str:
         """Return the same evaluation on the command line; trial files are in the folder."""
-        places = [shlex.quote(one) for one in self._places(folder)]
+        places = [shlex.quote(place) for place in self._places(folder)]
         words = ["crowdbot evaluate", *places, f'--navigators "{self.navigators}"', f"--seeds {self.seeds}"]
         robots = ",".join(self._robot_places(folder))
         words += [f"--robots {shlex.quote(robots)}"] if robots else []
@@ -142,13 +144,15 @@ for cell in result.cells:
 
     def _places(self, folder: Path) -> list[str]:
         """Return names of built-in trials, and paths of files from the working folder."""
-        return [one if one in builtin_trials() else shown_path(folder / one) for one in self.trials]
+        return [trial if trial in builtin_trials() else shown_path(folder / trial) for trial in self.trials]
 
     def _robot_places(self, folder: Path) -> list[str]:
         """Return names of robots, and paths of robot folders from the working folder."""
         return [
-            shown_path(folder / one) if one and (folder / one / "robot.xml").is_file() else one
-            for one in self._robot_names
+            shown_path(folder / robot_name)
+            if robot_name and (folder / robot_name / "robot.xml").is_file()
+            else robot_name
+            for robot_name in self._robot_names
         ]
 
     @property
@@ -200,7 +204,7 @@ def describe_robots(request: EvaluationRequest, folder: Path) -> tuple[Evaluatio
     with remarks_at_end() as replaced:
         plan = request.plan(folder)
     variants = [cell.variant for cell in plan.cells]
-    return plan, tuple(dict.fromkeys([*replaced, *robot_lines((one.name, one.robots) for one in variants)]))
+    return plan, tuple(dict.fromkeys([*replaced, *robot_lines((variant.name, variant.robots) for variant in variants)]))
 
 
 def _inside(folder: Path, name: str) -> Path:

@@ -136,7 +136,7 @@ class ExperimentDesk(Desk):
         """
         with self._lock:
             screen = self._screen(index).step.screen
-            known = [one.name for one in screen.questions] if screen else []
+            known = [question.name for question in screen.questions] if screen else []
             self._draft = (index, {str(name): value for name, value in answers.items() if name in known})
             self._tell()
 
@@ -351,13 +351,13 @@ class ExperimentDesk(Desk):
             "waiting": now.waiting,
             "reason": now.reason,
             "index": now.index,
-            "steps": [{"name": one.name, "role": one.role, "number": one.number} for one in now.steps],
+            "steps": [{"name": step.name, "role": step.role, "number": step.number} for step in now.steps],
             "possible": list(now.possible_events),
             "html": page.html if page else "",
             "text": page.text if page else "",
-            "questions": [question_form(one) for one in screen.questions] if screen else [],  # type: ignore[arg-type]
+            "questions": [question_form(question) for question in screen.questions] if screen else [],  # type: ignore[arg-type]
             "answers": {**now.answers.get(now.index, {}), **(self._draft[1] if self._draft[0] == now.index else {})},
-            "outcomes": {str(index): one.outcome for index, one in now.results.items()},
+            "outcomes": {str(index): result.outcome for index, result in now.results.items()},
             "rate": self._rate,
             "streams": {} if self._streams is None else dataclasses.asdict(self._streams.choice),
         }

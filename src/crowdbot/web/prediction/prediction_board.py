@@ -62,7 +62,7 @@ class BoardMember:
             "name": self.spec.name,
             "settings": self.choice.settings,
             "calibrated": self.choice.calibrated,
-            "results": {name: one.summary() for name, one in self.results.items()},
+            "results": {name: result.summary() for name, result in self.results.items()},
             "fit": clean_json(self.fit),
         }
 
@@ -143,10 +143,10 @@ class PredictionBoard:
             spec.check(self.recording, self.setup.live)
         if len(self.members) >= MOST_PREDICTORS:
             raise InputError(f"there are {MOST_PREDICTORS} predictors; remove one first")
-        if any((one.spec.name, one.choice.samples) == (spec.name, choice.samples) for one in self.members):
+        if any((member.spec.name, member.choice.samples) == (spec.name, choice.samples) for member in self.members):
             raise InputError(f"the predictor {spec.name} is in the list already")
         self._number += 1
-        slots = {one.slot for one in self.members}
+        slots = {member.slot for member in self.members}
         slot = next(number for number in range(MOST_PREDICTORS) if number not in slots)
         member = BoardMember(f"p{self._number}", slot, choice, spec)
         self.members.append(member)
@@ -158,10 +158,10 @@ class PredictionBoard:
         Raises:
             InputError: there is none.
         """
-        found = next((one for one in self.members if one.key == key), None)
-        if found is None:
+        board_member = next((member for member in self.members if member.key == key), None)
+        if board_member is None:
             raise InputError(f"predictor {key!r:.40} is not in the list")
-        return found
+        return board_member
 
     def degrade(self, choice: DegradationChoice | None) -> None:
         """Set the degradation of the observed rows; results of the one before are dropped.
@@ -217,7 +217,7 @@ class PredictionBoard:
             self._inputs[DEGRADED] = input_windows(self.recording, self.degradation.degradation, seed)
         for member in self.members:
             member.spec.check(self.recording, live)
-        found = []
+        result = []
         for name, windows in self._inputs.items():
             task = dataclasses.replace(
                 self.task(self.members),
@@ -226,22 +226,22 @@ class PredictionBoard:
             results = {}
             for member in self.members:
                 results[member.key] = member.results[name] = PredictorResults(*windows)
-            found.append((task, results))
-        return found
+            result.append((task, results))
+        return result
 
     def task(self, members: list[BoardMember]) -> PredictionTask:
         """Return the task of some predictors on the recording as it is."""
         setup = self._setup
-        parts = tuple(TaskMember(one.key, one.spec, one.choice.samples) for one in members)
+        parts = tuple(TaskMember(member.key, member.spec, member.choice.samples) for member in members)
         return PredictionTask(setup.recording, parts, None, setup.seed, setup.best_of, setup.live)
 
     def facts(self) -> dict[str, Any]:
         """Return the board as JSON."""
-        labels = [one.label for one in self.members]
+        labels = [member.label for member in self.members]
         own = self.degradation
         return {
             "recording": None if self.setup is None else self._recording_facts(),
-            "predictors": [one.facts(labels) for one in self.members],
+            "predictors": [member.facts(labels) for member in self.members],
             "degradation": None
             if own is None
             else {"name": own.name, "values": dict(own.values), "text": str(own.degradation)},

@@ -92,7 +92,7 @@ class PredictorResults:
         """Return a line of the log for each window: frame, people, cost, iterations, time [s], ADE."""
         f = part.frames
         return [
-            [plain_number(one) for one in row]
+            [plain_number(item) for item in row]
             for row in zip(f.frame, f.people, f.cost, f.evaluations, f.seconds, f.ade, strict=True)
         ]
 
@@ -113,7 +113,7 @@ class PredictorResults:
         here = self._person.get(index, {}).get(id)
         every = [own[id] for own in list(self._person.values()) if id in own]
         mean = np.mean(every, axis=0).tolist() if every else [math.nan, math.nan]
-        found: dict[str, Any] = {
+        result: dict[str, Any] = {
             "ade": plain_number(here[0]) if here else None,
             "fde": plain_number(here[1]) if here else None,
             "mean_ade": plain_number(mean[0]),
@@ -124,11 +124,11 @@ class PredictorResults:
         }
         if index in self._place:
             part, w = self._place[index]
-            found["cost"] = plain_number(part.frames.cost[w])
+            result["cost"] = plain_number(part.frames.cost[w])
             slot = np.flatnonzero(part.ids[w] == id)
             if part.fit and len(slot):
                 values, given = (array[slot[0]] for array in part.fit[w])
-                found["parameters"] = [
+                result["parameters"] = [
                     {
                         "name": name,
                         "unit": "" if unit == "1" else unit,
@@ -137,7 +137,7 @@ class PredictorResults:
                     }
                     for (name, unit), v, g in zip(part.names, values, given, strict=True)
                 ]
-        return found
+        return result
 
     def parameter_names(self) -> tuple[tuple[str, str], ...]:
         """Return names and units of the fitted parameters."""
@@ -145,10 +145,10 @@ class PredictorResults:
 
     def series(self, variable: str, person: int | None = None) -> list[float | None]:
         """Return a variable by window, for everybody or for one person; None where there is no value."""
-        found: list[float | None] = [None] * len(self.past)
+        result: list[float | None] = [None] * len(self.past)
         for index, (part, w) in sorted(self._place.items()):
-            found[index] = plain_number(self._value(variable, person, index, part, w))
-        return found
+            result[index] = plain_number(self._value(variable, person, index, part, w))
+        return result
 
     def _value(self, variable: str, person: int | None, index: int, part: WindowPart, w: int) -> float:
         if variable in ("ade", "fde") and person is not None:
@@ -169,7 +169,7 @@ class PredictorResults:
     def errors(self) -> PersonErrors | None:
         """Return the errors of all people so far."""
         parts = [part.errors for part in self._parts]
-        return PersonErrors.concatenate(parts) if parts and sum(len(one.ade) for one in parts) else None
+        return PersonErrors.concatenate(parts) if parts and sum(len(part.ade) for part in parts) else None
 
     def frames(self) -> FrameResults | None:
         """Return the results by frame so far."""
@@ -177,26 +177,26 @@ class PredictorResults:
 
     def whole(self) -> WindowPart | None:
         """Return all windows with a result as one part, None if there is none; windows come in order."""
-        parts = [one for one in list(self._parts) if one.ids]
+        parts = [part for part in list(self._parts) if part.ids]
         if not parts:
             return None
         return WindowPart(
             parts[0].first,
-            FrameResults.concatenate([one.frames for one in parts]),
-            PersonErrors.concatenate([one.errors for one in parts]),
-            [ids for one in parts for ids in one.ids],
-            [paths for one in parts for paths in one.paths],
-            [weight for one in parts for weight in one.weight],
-            [fit for one in parts for fit in one.fit],
+            FrameResults.concatenate([part.frames for part in parts]),
+            PersonErrors.concatenate([part.errors for part in parts]),
+            [ids for part in parts for ids in part.ids],
+            [paths for part in parts for paths in part.paths],
+            [weight for part in parts for weight in part.weight],
+            [fit for part in parts for fit in part.fit],
             self.parameter_names(),
         )
 
     def horizon(self) -> list[float | None]:
         """Return the mean error at each predicted row [m]."""
         if self.score is not None:
-            return [plain_number(one) for one in self.score.horizon]
+            return [plain_number(item) for item in self.score.horizon]
         errors = self.errors()
-        return [] if errors is None else [plain_number(one) for one in errors.over_horizon()]
+        return [] if errors is None else [plain_number(item) for item in errors.over_horizon()]
 
     def summary(self) -> dict[str, Any]:
         """Return the state as JSON."""

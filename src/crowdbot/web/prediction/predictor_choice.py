@@ -187,7 +187,7 @@ def _search_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     if patience is not None:
         found["patience"] = _count(settings, "patience", MOST_BUDGET)
     free = settings.get("free") or []
-    if not isinstance(free, list) or not all(isinstance(one, str) for one in free):
+    if not isinstance(free, list) or not all(isinstance(item, str) for item in free):
         raise InputError("free must be a list of names of parameters")
     learnt = settings.get("learnt") or ""
     if learnt not in LEARNT:

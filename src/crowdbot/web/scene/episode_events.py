@@ -53,14 +53,14 @@ def episode_series(episode: RecordedEpisode) -> dict[str, list[float | None]]:
     people = episode.active.copy()
     people[:, list(episode.robots)] = False
     stride = max(1, math.ceil(len(times) / MOST_POINTS))
-    found = {"time": _plain(times[::stride]), "people": _plain(people.sum(axis=1)[::stride].astype(np.float64))}
+    result = {"time": _plain(times[::stride]), "people": _plain(people.sum(axis=1)[::stride].astype(np.float64))}
     if episode.robots:
         robot = episode.robots[0]
         nearest = _clearance(episode, robot).min(axis=1)
         starts = np.arange(0, len(times), stride)
-        found["clearance"] = _plain(np.minimum.reduceat(nearest, starts))
-        found["speed"] = _plain(np.hypot(*episode.velocity[:, robot].T)[::stride])
-    return found
+        result["clearance"] = _plain(np.minimum.reduceat(nearest, starts))
+        result["speed"] = _plain(np.hypot(*episode.velocity[:, robot].T)[::stride])
+    return result
 
 
 def _clearance(episode: RecordedEpisode, robot: int) -> Floats:
@@ -80,9 +80,9 @@ def _clearance(episode: RecordedEpisode, robot: int) -> Floats:
 
 def _contacts(episode: RecordedEpisode) -> list[EpisodeEvent]:
     found, latest = list[EpisodeEvent](), dict[tuple[str, str], float]()
-    for one in episode.contacts:
-        pair = str(one.robot), str(one.other)
-        time = float(one.time)
+    for contact in episode.contacts:
+        pair = str(contact.robot), str(contact.other)
+        time = float(contact.time)
         if time - latest.get(pair, -math.inf) > APART:
             found.append(EpisodeEvent(round(time, 3), "contact", f"{pair[0]} touches {_body(pair[1])}"))
         latest[pair] = time
@@ -91,15 +91,15 @@ def _contacts(episode: RecordedEpisode) -> list[EpisodeEvent]:
 
 def _falls(episode: RecordedEpisode) -> list[EpisodeEvent]:
     """Return falls, and forces on people by orders."""
-    found = []
-    for one in episode.falls:
-        cause = f", pushed by {_body(one.cause)}" if one.cause else ""
-        found.append(EpisodeEvent(round(one.begin, 3), "fall", f"person {one.person} falls {one.direction}{cause}"))
+    events = []
+    for fall in episode.falls:
+        cause = f", pushed by {_body(fall.cause)}" if fall.cause else ""
+        events.append(EpisodeEvent(round(fall.begin, 3), "fall", f"person {fall.person} falls {fall.direction}{cause}"))
     for time, order in episode.orders:
         if isinstance(order, PushOrder):
             text = f"person {order.person} is pushed with {order.force:g} N for {order.duration:g} s"
-            found.append(EpisodeEvent(round(time, 3), "push", text))
-    return found
+            events.append(EpisodeEvent(round(time, 3), "push", text))
+    return events
 
 
 def _body(name: str) -> str:
@@ -108,26 +108,26 @@ def _body(name: str) -> str:
 
 def _near_misses(episode: RecordedEpisode, robot: int, name: str) -> list[EpisodeEvent]:
     gaps = _clearance(episode, robot)
-    found = []
+    events = []
     for person in np.flatnonzero((gaps < NEAR_MISS).any(axis=0)).tolist():
         for first, last in _stretches(gaps[:, person] < NEAR_MISS):
             k = first + int(np.argmin(gaps[first:last, person]))
             if gaps[k, person] > 0.0:
                 about = f"{name} passes person {int(episode.ids[person])} at {gaps[k, person]:.2f} m"
-                found.append(EpisodeEvent(round(float(episode.times[k]), 3), "near miss", about))
-    return found
+                events.append(EpisodeEvent(round(float(episode.times[k]), 3), "near miss", about))
+    return events
 
 
 def _stalls(episode: RecordedEpisode, robot: int, name: str) -> list[EpisodeEvent]:
     stands = np.hypot(*episode.velocity[:, robot].T) < STALL_SPEED
-    found = []
+    events = []
     for first, last in _stretches(stands):
         time = float(episode.times[last - 1] - episode.times[first])
         if time >= STALL:
-            found.append(
+            events.append(
                 EpisodeEvent(round(float(episode.times[first]), 3), "stall", f"{name} stands for {time:.1f} s")
             )
-    return found
+    return events
 
 
 def _stretches(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -136,4 +136,4 @@ def _stretches(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def _plain(values: Any) -> list[float | None]:
-    return [round(one, 4) if math.isfinite(one) else None for one in np.asarray(values, dtype=np.float64).tolist()]
+    return [round(item, 4) if math.isfinite(item) else None for item in np.asarray(values, dtype=np.float64).tolist()]

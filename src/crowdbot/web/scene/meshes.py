@@ -109,7 +109,10 @@ def robot_mesh(robot: Robot) -> StateFrame:
         faces.append(surface.faces + points)
         colors.append(surface.colors)
         coordinates.append(surface.uv)
-        textures += [one._replace(first=one.first + triangles, last=one.last + triangles) for one in surface.textures]
+        textures += [
+            texture._replace(first=texture.first + triangles, last=texture.last + triangles)
+            for texture in surface.textures
+        ]
         points, triangles = points + len(surface.vertices), triangles + len(surface.faces)
     return StateFrame(
         "robot", 0.0,
@@ -161,10 +164,10 @@ def texture_arrays(textures: Sequence[TexturedFaces], uv: NDArray[np.float64]) -
         uv: texture coordinates ``[N, 2]`` of its vertices.
     """
     numbers: dict[bytes, int] = {}
-    for one in textures:
-        if one.image not in numbers and len(numbers) < MOST_IMAGES:
-            numbers[one.image] = len(numbers)
-    rows = [(one.first, one.last, numbers[one.image]) for one in textures if one.image in numbers]
+    for texture in textures:
+        if texture.image not in numbers and len(numbers) < MOST_IMAGES:
+            numbers[texture.image] = len(numbers)
+    rows = [(texture.first, texture.last, numbers[texture.image]) for texture in textures if texture.image in numbers]
     if not rows:
         return {}
     share = MOST_BYTES // len(numbers)

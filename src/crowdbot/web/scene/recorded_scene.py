@@ -73,12 +73,12 @@ def recorded_slots(first: Ints, episode: RecordedEpisode) -> Ints | None:
         new = np.flatnonzero(now & (slots < 0)).tolist()
         free |= set(left)
         free -= set(slots[now & (slots >= 0)].tolist())
-        for one in new:
+        for item in new:
             same = next((slot for slot in left if slot in free), None)
             chosen = min(free, default=None) if same is None else same
             if chosen is None:
                 return None
-            slots[one] = chosen
+            slots[item] = chosen
             free.discard(chosen)
     return slots
 
@@ -107,8 +107,8 @@ class RecordedScene:
         self.ids = simulation.world.ids[0].copy()
         self._at = math.nan
         self._reading_times = {name: rows.times for name, rows in episode.readings.items()}
-        self._robot_names = [str(one["name"]) for one in json.loads(episode.metadata["robots"])]
-        self._force_times = [one.time for one in episode.forces]
+        self._robot_names = [str(load["name"]) for load in json.loads(episode.metadata["robots"])]
+        self._force_times = [force.time for force in episode.forces]
         trial = simulation.trial
         self._fixed_goals = not (
             trial.journeys or trial.portals or trial.sources or episode.reactions is not None or episode.orders
@@ -153,7 +153,7 @@ class RecordedScene:
         """Return the poses of people out of balance by row of their body; none in files that do not have them."""
         k, share = self._place(seconds)
         known = self.episode.fall_poses
-        before, after = (known[min(one, len(known) - 1)] if known else {} for one in (k, k + 1))
+        before, after = (known[min(item, len(known) - 1)] if known else {} for item in (k, k + 1))
         found = {}
         for person in {*before, *after}:
             if 0 <= person < len(self._slots) and self.episode.active[k, person]:
@@ -185,9 +185,9 @@ class RecordedScene:
         k, share = self._place(self._at)
         following = min(k + 1, len(self.episode.times) - 1)
         joints = {
-            one.name: _between(rows[one.name][k], rows[one.name][following], share)
-            for one in body.model.movable
-            if one.name in rows
+            item.name: _between(rows[item.name][k], rows[item.name][following], share)
+            for item in body.model.movable
+            if item.name in rows
         }
         known = {name: at for name, at in joints.items() if math.isfinite(at)}
         tilt = self._tilt(control.robot.name, k, following, share)
@@ -218,8 +218,8 @@ class RecordedScene:
         k, _ = self._place(self._at)
         begin = self.episode.times[k] - 1e-9
         rows = self.episode.forces[bisect.bisect_left(times, begin) : bisect.bisect_right(times, self._at + 1e-9)]
-        latest = {(one.first, one.second, one.first_part, one.limb): one for one in rows}
-        return [(*one.point, *one.vector) for one in latest.values()]
+        latest = {(row.first, row.second, row.first_part, row.limb): row for row in rows}
+        return [(*item.point, *item.vector) for item in latest.values()]
 
 
 def _between(a: float, b: float, share: float) -> float:

@@ -69,5 +69,5 @@ class SceneInstant:
             float(simulation.world.times[0]),
             lambda control: link_poses(simulation, scene, control),
             lambda control, sensor: sensor.reading(0),
-            lambda: [(*one.point, *one.vector) for one in simulation.world.forces_of(0)],
+            lambda: [(*item.point, *item.vector) for item in simulation.world.forces_of(0)],
         )

@@ -37,7 +37,7 @@ class WalkingBodies:
         trial, scene, seed = simulation.trial, simulation.world.environment_scene(0), simulation.seeds[0]
         count = trial.people + len(trial.robots)
         looks = people_appearance(trial, simulation.people, max(count, scene.shape[1]), seed)
-        robots = [one.agent for one in (*simulation.robots, *simulation.former_robots)]
+        robots = [robot.agent for robot in (*simulation.robots, *simulation.former_robots)]
         afoot = np.setdiff1d(np.arange(scene.shape[1]), robots)
         wanted = len(afoot) + len(looks.riders)
         people = looks.people if len(looks.people) == wanted else None
@@ -53,7 +53,7 @@ class WalkingBodies:
             return
         scene, now = simulation.world.environment_scene(0), float(simulation.world.times[0])
         if scene.shape[1] > len(self.motion.row):
-            robots = [one.agent for one in simulation.robots]
+            robots = [robot.agent for robot in simulation.robots]
             new = np.setdiff1d(np.arange(len(self.motion.row), scene.shape[1]), robots)
             self.motion.grow(scene.shape[1], new.tolist())
         if now > self._time:

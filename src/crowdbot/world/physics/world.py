@@ -203,7 +203,7 @@ class PhysicsWorld(PlanarWorld):
         """
         if robot in self.ghosts:
             return np.array([math.inf])
-        depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
+        depth = [force.depth for force in self.forces if force.first == ("robot", robot) and self._fixed(force.second)]
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
 
     def plane_scene(self, environment: int | None = None) -> Scene:
@@ -521,9 +521,9 @@ class PhysicsWorld(PlanarWorld):
         if not 0 <= number < len(self.stage.props) or isinstance(self.stage.props[number], AbsentProp):
             raise InputError(f"there is no prop {number}; the stage has {len(self.stage.props)}")
         body = self.data.body(f"prop{number}")
-        found = np.eye(4)
-        found[:3, :3], found[:3, 3] = body.xmat.reshape(3, 3), body.xpos
-        return found
+        result = np.eye(4)
+        result[:3, :3], result[:3, 3] = body.xmat.reshape(3, 3), body.xpos
+        return result
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
         """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
@@ -546,7 +546,7 @@ class PhysicsWorld(PlanarWorld):
         shared += [part.compiled.base for part in self.rigid.parts]
         shared.append(self.rigid.reader.geoms)
         renderers, self._renderers = self._renderers, {}
-        known = {id(one): one for one in shared} | {id(part.data): copy.copy(part.data) for part in self.rigid.parts}
+        known = {id(item): item for item in shared} | {id(part.data): copy.copy(part.data) for part in self.rigid.parts}
         try:
             other = copy.deepcopy(self, known)
         finally:
@@ -578,7 +578,7 @@ class PhysicsWorld(PlanarWorld):
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
         """Remove a robot and its body; see :class:`World`."""
         chosen = robot_environments(self, agent, environments)
-        self.rigid.change(starts={one: start for one, start in self.rigid.starts.items() if one != agent})
+        self.rigid.change(starts={item: start for item, start in self.rigid.starts.items() if item != agent})
         remove_robot_at(self, agent, chosen)
         self._forget()
 

@@ -88,8 +88,8 @@ class RobotReactions:
     @functools.cached_property
     def _table(self) -> tuple[NDArray[np.int64], Floats]:
         rows = [
-            (reaction.distance, reaction.duration, reaction.pause, reaction.speed, reaction.gap, reaction.repulsion, reaction.range,
-             math.cos(0.5 * reaction.field_of_view))
+            (reaction.distance, reaction.duration, reaction.pause, reaction.speed, reaction.gap,
+             reaction.repulsion, reaction.range, math.cos(0.5 * reaction.field_of_view))
             for reaction in self.reactions
         ]  # fmt: skip
         codes = np.array([reaction.code for reaction in self.reactions], dtype=np.int64)

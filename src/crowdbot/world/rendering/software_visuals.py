@@ -210,7 +210,7 @@ class SoftwareVisuals:
 
     def _building_parts(self) -> tuple[list[_Part], list[_Part]]:
         """Return the triangles of a building below ceilings, and its ceilings and roofs."""
-        found: tuple[list[_Part], list[_Part]] = [], []
+        building_parts: tuple[list[_Part], list[_Part]] = [], []
         for part in () if self._stage.building is None else self._stage.building.parts:
             color: tuple[float, ...] = part.color
             texture = -1
@@ -222,8 +222,8 @@ class SoftwareVisuals:
             )
             code = FLOOR if part.kind == "floor" else WALL
             own = _Part(mesh, np.eye(3), np.zeros(3), self._paint(color, texture), code)
-            found[part.kind == "ceiling"].append(own)
-        return found
+            building_parts[part.kind == "ceiling"].append(own)
+        return building_parts
 
     def _own_picture(self, body: RiggedBody) -> int:
         """Add the picture of an imported body, and return its paint."""

@@ -127,26 +127,29 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
     points = {name: _points(model, name, poses) for name in model.links}
     solid = [rows for rows in points.values() if len(rows)]
     ground = float(min(rows[:, 2].min() for rows in solid)) if solid else 0.0
-    found: list[FoundWheel] = []
+    found_wheels: list[FoundWheel] = []
     loose: list[FoundWheel] = []
     for joint in model.movable:
         wheel = _wheel(model, joint, poses, points[joint.child], ground)
         if wheel is None and model.links[joint.child].collisions:  # the collision shape of a wheel may be a box
             wheel = _wheel(model, joint, poses, _outline(model.links[joint.child].visuals, poses[joint.child]), ground)
         if wheel is not None:
-            (loose if _is_castor(model, joint) else found).append(wheel)
-    if not found:  # castors alone cannot drive a robot: they have motors
-        found, loose = [wheel for wheel in loose if wheel.steering], [wheel for wheel in loose if not wheel.steering]
+            (loose if _is_castor(model, joint) else found_wheels).append(wheel)
+    if not found_wheels:  # castors alone cannot drive a robot: they have motors
+        found_wheels, loose = (
+            [wheel for wheel in loose if wheel.steering],
+            [wheel for wheel in loose if not wheel.steering],
+        )
     castors = [wheel.link for wheel in loose]
-    legs = () if found or castors else _legs(model, points, ground)
-    moving = {name for wheel in found for name in _below(model, wheel.link)}
+    legs = () if found_wheels or castors else _legs(model, points, ground)
+    moving = {name for wheel in found_wheels for name in _below(model, wheel.link)}
     for name, rows in points.items():
         below = len(rows) > 0 and rows[:, 2].min() < ground + TOUCHES
         if below and name not in moving and name not in castors and not legs:
             castors.append(name)
-    named, why = (kind, "given") if kind else _kind(found, legs, plugins, model)
-    driven = tuple(wheel.joint for wheel in _driven(found, named, model))
-    return BaseKind(named, why, tuple(found), driven, tuple(castors), legs, ground)
+    named, why = (kind, "given") if kind else _kind(found_wheels, legs, plugins, model)
+    driven = tuple(wheel.joint for wheel in _driven(found_wheels, named, model))
+    return BaseKind(named, why, tuple(found_wheels), driven, tuple(castors), legs, ground)
 
 
 def _points(model: RobotModel, name: str, poses: Mapping[str, Floats]) -> Floats:
@@ -214,7 +217,7 @@ def _above(model: RobotModel, joint: Joint) -> list[Joint]:
 
     Joints above the body, as x, y and theta of a simulated base, move the whole robot.
     """
-    parents = {one.child: one for one in model.joints.values()}
+    parents = {joint.child: joint for joint in model.joints.values()}
     found, name, body = [], joint.parent, _body(model)
     while name in parents and name != body:
         found.append(parents[name])
@@ -234,17 +237,17 @@ def _body(model: RobotModel) -> str:
 
 
 def _below(model: RobotModel, link: str) -> set[str]:
-    found = {link}
+    below = {link}
     for joint in model.joints.values():
-        if joint.parent in found:
-            found.add(joint.child)
-    return found
+        if joint.parent in below:
+            below.add(joint.child)
+    return below
 
 
 def _is_castor(model: RobotModel, joint: Joint) -> bool:
     if any("cast" in name.lower() for name in (joint.name, joint.child)):
         return True
-    free = [one for one in _above(model, joint) if one.kind == "continuous" and not one.motor.kind]
+    free = [item for item in _above(model, joint) if item.kind == "continuous" and not item.motor.kind]
     return bool(free) and not joint.motor.kind
 
 

@@ -92,14 +92,14 @@ def read_drive_parameters(root: Element) -> DriveParameters:
     """Return the plugins that move the base, and their numbers above 0."""
     plugins: list[str] = []
     values: dict[str, float] = {}
-    for plugin in [one for outer in root.each("gazebo") for one in outer.each("plugin")]:
+    for plugin in [item for outer in root.each("gazebo") for item in outer.each("plugin")]:
         name = f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}".strip()
         words = ("drive", "move", "ackermann", "mecanum", "omni", "steer")
         if not any(word in name.lower() for word in words) or SENSING.search(name.lower()):
             continue
         plugins.append(name)
         for key, names in NAMES.items():
-            for inner in (one for one in plugin.children if one.tag in names):
+            for inner in (child for child in plugin.children if child.tag in names):
                 number = _number(inner)
                 if number is not None and number > 0.0:
                     values.setdefault(key, number)
@@ -110,17 +110,17 @@ def read_drive_parameters(root: Element) -> DriveParameters:
 
 def find_sensors(root: Element) -> list[FoundSensor]:
     """Return the sensors of ``<gazebo reference=...><sensor>`` and of plugins that are sensors."""
-    found: list[FoundSensor] = []
+    found_sensors: list[FoundSensor] = []
     for outer in root.each("gazebo"):
         link = outer.attributes.get("reference", "")
         for sensor in outer.each("sensor"):
-            found += _sensor(sensor, link)
+            found_sensors += _sensor(sensor, link)
         for plugin in outer.each("plugin"):
             name = plugin.attributes.get("filename", "") or plugin.attributes.get("name", "")
             if "imu" in name.lower() and _text(plugin, "bodyName"):
-                found.append(_imu_plugin(plugin, name))
+                found_sensors.append(_imu_plugin(plugin, name))
     unique: list[FoundSensor] = []
-    for one in found:
+    for one in found_sensors:
         used = [other.name for other in unique]
         name = one.name
         while name in used:
@@ -186,7 +186,7 @@ def _name(text: str) -> str:
 
 
 def _has_plugin(sensor: Element, *words: str) -> bool:
-    names = [f"{one.attributes.get('filename', '')}".lower() for one in sensor.each("plugin")]
+    names = [f"{item.attributes.get('filename', '')}".lower() for item in sensor.each("plugin")]
     return any(word in name for name in names for word in words)
 
 
@@ -201,7 +201,7 @@ def _pose(element: Element) -> dict[str, str]:
 
 
 def _lidar(sensor: Element, shared: dict[str, str]) -> dict[str, str]:
-    ray = next((one for tag in ("ray", "lidar") for one in sensor.each(tag)), None)
+    ray = next((item for tag in ("ray", "lidar") for item in sensor.each(tag)), None)
     samples = _number(ray, "scan", "horizontal", "samples") or 360.0
     low = _number(ray, "scan", "horizontal", "min_angle")
     high = _number(ray, "scan", "horizontal", "max_angle")
@@ -267,7 +267,7 @@ def _range_finder(sensor: Element, kind: str, angle: float, shared: dict[str, st
     angle = min(max(angle, wide, NARROW), 2.5)
     if kind == "infrared":
         return {"type": "infrared", "dispersion": f"{0.5 * angle:.9g}"}
-    ray = next((one for tag in ("ray", "lidar") for one in sensor.each(tag)), None)
+    ray = next((item for tag in ("ray", "lidar") for item in sensor.each(tag)), None)
     far = _number(ray, "range", "max") or 10.0
     return {"type": "ultrasound", "radius": f"{max(0.05, far * math.tan(0.5 * angle)):g}"}
 

@@ -122,14 +122,14 @@ class _Reader:
 
     def ground_limits(self, root: Element) -> dict[str, float]:
         """Return the largest step and slope that the robot passes, where the file gives them."""
-        found = {}
+        result = {}
         for key in ("max-step", "max-slope"):
             if key in root.attributes:
                 value = self.number(root, key)
-                found[key.replace("-", "_")] = max(0.0, value)
+                result[key.replace("-", "_")] = max(0.0, value)
                 if value < 0.0:
                     self.say(root, f'{key}="{root.attributes[key][:40]}" must be at least 0')
-        return found
+        return result
 
     def tag(self, element: Element, known: tuple[str, ...]) -> None:
         """Record an unknown element and return the tag that was probably meant."""
@@ -365,8 +365,10 @@ def extend_robot(root: Element, folder: Path, shipped: Callable[[str], Path]) ->
     path = shipped(name)
     base = parse_xml(read_bytes(path, "robot"), str(path), what="robot", root="robot")
     base, place = extend_robot(base, path.parent, shipped)
-    given, model = {_key(one) for one in root.children}, root.attributes.get("urdf")
-    taken = [one for one in base.children if _key(one) not in given and not (own_sensors and one.tag == "sensor")]
+    given, model = {_key(child) for child in root.children}, root.attributes.get("urdf")
+    taken = [
+        child for child in base.children if _key(child) not in given and not (own_sensors and child.tag == "sensor")
+    ]
     root.attributes = {**base.attributes, "name": folder.resolve().name, **root.attributes}
     root.children = [*taken, *root.children]
     return root, folder if model else place

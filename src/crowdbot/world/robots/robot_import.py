@@ -383,14 +383,14 @@ def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
     """Add the sensors of Gazebo tags, and those that links are named after."""
     change, model = "<sensor> in robot.xml", done.model
     sensors = find_sensors(source)
-    for one in sensors:
-        link = one.link or model.root
-        if not one.attributes or link not in model.links:
-            why = "there is no such link" if one.attributes else "its type is not supported"
-            done.table.add(f"sensor {one.name}", "left out", f"{one.source}; {why}", change, DERIVED)
+    for item in sensors:
+        link = item.link or model.root
+        if not item.attributes or link not in model.links:
+            why = "there is no such link" if item.attributes else "its type is not supported"
+            done.table.add(f"sensor {item.name}", "left out", f"{item.source}; {why}", change, DERIVED)
             continue
-        root.children.append(Element("sensor", {"name": one.name, "link": link} | one.attributes))
-        done.table.add(f"sensor {one.name}", one.attributes["type"], one.source, change)
+        root.children.append(Element("sensor", {"name": item.name, "link": link} | item.attributes))
+        done.table.add(f"sensor {item.name}", item.attributes["type"], item.source, change)
     for sensor in guess_sensors(tuple(model.links), sensors):
         root.children.append(Element("sensor", {"name": sensor.name, "link": sensor.link} | sensor.attributes))
         done.table.add(f"sensor {sensor.name}", sensor.attributes["type"], sensor.source, change, GUESS)

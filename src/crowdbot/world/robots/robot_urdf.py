@@ -297,7 +297,7 @@ def _effort(model: RobotModel, base: BaseKind, wheel: FoundWheel, speed: float) 
     effort = (
         share * model.mass * GRAVITY * wheel.radius
     )  # skid-steer wheels also push against the friction of the others
-    dragged = sum(resistance(model.joints[one.joint], speed / one.radius) for one in base.wheels)
+    dragged = sum(resistance(model.joints[wheel.joint], speed / wheel.radius) for wheel in base.wheels)
     own = resistance(model.joints[wheel.joint], speed / wheel.radius)
     against = max(own, dragged / max(1, len(base.driven)))  # also that of wheels without motors
     why = f"weight and radius, and {against:.4g} N m of <dynamics>" if against else "weight and radius"

@@ -38,9 +38,9 @@ def find_package(name: str, near: Path) -> Path | None:
     """
     near = near.resolve()
     above = [near, *list(near.parents)[:3]]
-    found = next((folder for folder in above if _is_package(folder, name)), None)
-    if found is not None or not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
-        return found
+    path = next((folder for folder in above if _is_package(folder, name)), None)
+    if path is not None or not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
+        return path
     if not (near / "package.xml").is_file():
         return None
     for parent in list(near.parents)[:2]:

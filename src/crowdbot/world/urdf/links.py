@@ -96,15 +96,15 @@ def _parse_shape(reader: UrdfReader, geometry: Element, collision: bool) -> Shap
 
 
 def _length(reader: UrdfReader, element: Element, key: str) -> float | None:
-    found = reader.required_value(element, key)
-    if found is not None and found <= 0.0:
+    length = reader.required_value(element, key)
+    if length is not None and length <= 0.0:
         reader.say(element, f'{key}="{element.attributes[key][:40]}" must be above 0')
         return None
-    if found is not None and not THINNEST <= found <= LARGEST:
+    if length is not None and not THINNEST <= length <= LARGEST:
         text = element.attributes[key][:40]
         reader.say(element, f'{key}="{text}" must be at least {THINNEST:g} m and at most {LARGEST:g} m')
         return None
-    return found
+    return length
 
 
 def _inertial(reader: UrdfReader, element: Element) -> tuple[float | None, Floats | None, Floats | None]:

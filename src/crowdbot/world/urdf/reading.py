@@ -279,23 +279,23 @@ def add_missing_mass(
         elements: the elements of the links, for line numbers.
     """
     if not any(link.inertial for link in links.values()):
-        found = {name: _at_water_density(reader, link, elements[name]) for name, link in links.items()}
+        missing_mass = {name: _at_water_density(reader, link, elements[name]) for name, link in links.items()}
     else:
-        found = dict(links)
+        missing_mass = dict(links)
     above = {joint.child: joint for joint in joints.values()}
     part: dict[str, str] = {}
     members: dict[str, list[str]] = {}
-    for name in found:
+    for name in missing_mass:
         joint = above.get(name)
         part[name] = part[joint.parent] if joint is not None and joint.kind == "fixed" else name
         members.setdefault(part[name], []).append(name)
     for first, names in members.items():
-        if not any(found[name].inertial for name in names):
-            shown = next((name for name in names if found[name].collisions or found[name].visuals), None)
+        if not any(missing_mass[name].inertial for name in names):
+            shown = next((name for name in names if missing_mass[name].collisions or missing_mass[name].visuals), None)
             if shown is not None or first in above:
                 name = shown or first
-                found[name] = _with_small_mass(reader, found[name], elements[name])
-    return found
+                missing_mass[name] = _with_small_mass(reader, missing_mass[name], elements[name])
+    return missing_mass
 
 
 def _at_water_density(reader: UrdfReader, link: Link, element: Element) -> Link:

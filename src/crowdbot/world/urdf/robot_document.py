@@ -164,7 +164,7 @@ def _reach(names: Collection[str], parts: dict[Path, _Part]) -> set[str]:
     found, waiting = set(names), list(names)
     while waiting:
         name = waiting.pop()
-        new = {one for path, part in parts.items() if path.name == name for one in part.includes} - found
+        new = {include for path, part in parts.items() if path.name == name for include in part.includes} - found
         found |= new
         waiting += new
     return found
@@ -192,11 +192,15 @@ def _part(path: Path) -> _Part | None:
     except (OSError, InputError):
         return None
     elements = list(_elements(root))
-    named = [(one.tag.removeprefix("xacro:"), one.attributes) for one in elements if one.tag.startswith("xacro:")]
+    named = [
+        (element.tag.removeprefix("xacro:"), element.attributes)
+        for element in elements
+        if element.tag.startswith("xacro:")
+    ]
     includes = {name for tag, row in named if tag == "include" for name in FILE_NAME.findall(row.get("filename", ""))}
     defined = {row.get("name", "").removeprefix("xacro:") for tag, row in named if tag == "macro"}
     called = {tag for tag, _ in named if tag not in COMMANDS}
-    links = any(one.tag == "link" for one in elements)
+    links = any(element.tag == "link" for element in elements)
     return _Part(frozenset(includes), frozenset(defined), frozenset(called), links)
 
 

@@ -185,9 +185,9 @@ class Mesh:
 
     def solid(self) -> Solid:
         """Return volume, centre and moments of its convex pieces, or of its bounding box without pieces."""
-        found = together([(piece.solid(), np.eye(4)) for piece in self.pieces])
-        if found is not None:
-            return found
+        result = together([(piece.solid(), np.eye(4)) for piece in self.pieces])
+        if result is not None:
+            return result
         low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
         x, y, z = np.maximum(high - low, 1e-6)
         box = Box((float(x), float(y), float(z))).solid()

@@ -118,17 +118,17 @@ class _Evaluation:
     def on_if(self, condition: Tree, yes: Tree, no: Tree) -> Any:
         return self.of(yes if self.of(condition) else no)
 
-    def on_or(self, one: Tree, other: Tree) -> Any:
-        return self.of(one) or self.of(other)
+    def on_or(self, tree: Tree, other: Tree) -> Any:
+        return self.of(tree) or self.of(other)
 
-    def on_and(self, one: Tree, other: Tree) -> Any:
-        return self.of(one) and self.of(other)
+    def on_and(self, tree: Tree, other: Tree) -> Any:
+        return self.of(tree) and self.of(other)
 
-    def on_not(self, one: Tree) -> bool:
-        return not self.of(one)
+    def on_not(self, tree: Tree) -> bool:
+        return not self.of(tree)
 
-    def on_sign(self, sign: str, one: Tree) -> Any:
-        value = self.of(one)
+    def on_sign(self, sign: str, tree: Tree) -> Any:
+        value = self.of(tree)
         return -value if sign == "-" else +value
 
     def on_compare(self, first: Tree, *pairs: tuple[str, Tree]) -> bool:
@@ -140,8 +140,8 @@ class _Evaluation:
             left = right
         return True
 
-    def on_binary(self, sign: str, one: Tree, other: Tree) -> Any:
-        left, right = self.of(one), self.of(other)
+    def on_binary(self, sign: str, tree: Tree, other: Tree) -> Any:
+        left, right = self.of(tree), self.of(other)
         if sign == "%" and isinstance(left, str):
             return format_text(left, right)
         if sign == "**":
@@ -173,14 +173,14 @@ class _Evaluation:
     def on_slice(self, *parts: Tree | None) -> slice:
         return slice(*(None if part is None else self.of(part) for part in parts))
 
-    def on_index(self, one: Tree, index: Tree) -> Any:
-        value = self.of(one)
+    def on_index(self, tree: Tree, index: Tree) -> Any:
+        value = self.of(tree)
         if not isinstance(value, str | list | tuple | dict):
             raise InputError(f"a {type(value).__name__} has no items")
         return value[self.of(index)]
 
-    def on_attribute(self, one: Tree, name: str) -> Any:
-        value = self.of(one)
+    def on_attribute(self, tree: Tree, name: str) -> Any:
+        value = self.of(tree)
         if isinstance(value, dict) and name in value:
             return value[name]
         for kind, known in ATTRIBUTES.items():
@@ -194,8 +194,8 @@ class _Evaluation:
                 pass
         raise InputError(f"{name[:60]!r} is not an attribute that an expression can use")
 
-    def on_call(self, one: Tree, rows: tuple[Tree, ...], named: tuple[tuple[str, Tree], ...]) -> Any:
-        function = self.of(one)
+    def on_call(self, tree: Tree, rows: tuple[Tree, ...], named: tuple[tuple[str, Tree], ...]) -> Any:
+        function = self.of(tree)
         if not callable(function):
             raise InputError(f"a {type(function).__name__} is not a function")
         values = [self.of(row) for row in rows]
@@ -209,10 +209,10 @@ def _power(base: Any, exponent: Any) -> Any:
     whole = isinstance(base, int) and isinstance(exponent, int) and exponent >= 0
     if whole and exponent * math.log2(abs(base) + 1) > 1000.0:
         raise InputError("a power in an expression is too large")
-    found = base**exponent
-    if isinstance(found, complex):
+    power = base**exponent
+    if isinstance(power, complex):
         raise InputError("a power in an expression is not a real number")
-    return found
+    return power
 
 
 def _size(value: Any, most: int) -> int:

@@ -83,34 +83,34 @@ class _Parser:
         self.depth += 1
         if self.depth > MOST_DEPTH:
             raise InputError(f"an expression is nested more than {MOST_DEPTH} levels deep")
-        found = self.either()
+        tree = self.either()
         if self.accept("if"):
             condition = self.either()
             self.expect("else")
-            found = ("if", condition, found, self.conditional())
+            tree = ("if", condition, tree, self.conditional())
         self.depth -= 1
-        return found
+        return tree
 
     def either(self) -> Tree:
-        found = self.both()
+        tree = self.both()
         while self.accept("or"):
-            found = ("or", found, self.both())
-        return found
+            tree = ("or", tree, self.both())
+        return tree
 
     def both(self) -> Tree:
-        found = self.negation()
+        tree = self.negation()
         while self.accept("and"):
-            found = ("and", found, self.negation())
-        return found
+            tree = ("and", tree, self.negation())
+        return tree
 
     def negation(self) -> Tree:
         count = 0
         while self.accept("not"):
             count += 1
-        found = self.comparison()
+        tree = self.comparison()
         for _ in range(min(count, 2 + count % 2)):
-            found = ("not", found)
-        return found
+            tree = ("not", tree)
+        return tree
 
     def comparison(self) -> Tree:
         first = self.binary(0)
@@ -129,10 +129,10 @@ class _Parser:
     def binary(self, level: int) -> Tree:
         if level == len(BINARY):
             return self.sign()
-        found = self.binary(level + 1)
+        tree = self.binary(level + 1)
         while self.now.kind == "sign" and (sign := self.accept(*BINARY[level])):
-            found = ("binary", sign, found, self.binary(level + 1))
-        return found
+            tree = ("binary", sign, tree, self.binary(level + 1))
+        return tree
 
     def sign(self) -> Tree:
         signs = []
@@ -140,10 +140,10 @@ class _Parser:
             signs.append(sign)
         if len(signs) > MOST_DEPTH:
             raise InputError(f"an expression has more than {MOST_DEPTH} signs in a row")
-        found = self.power()
+        tree = self.power()
         for sign in reversed(signs):
-            found = ("sign", sign, found)
-        return found
+            tree = ("sign", sign, tree)
+        return tree
 
     def power(self) -> Tree:
         base = self.postfix()

@@ -134,12 +134,12 @@ class Texts:
 
     def variable(self, name: str, default: str | None = None) -> str:
         """Return the value of an environment variable from the given ones; the environment itself is not read."""
-        found = self.environment.get(name, default)
-        if found is None:
+        result = self.environment.get(name, default)
+        if result is None:
             raise InputError(
                 f"$(env {name[:60]}) has no value, since the environment is not read; give --env {name}=VALUE"
             )
-        return found
+        return result
 
     def package(self, name: str) -> str:
         """Return the address of a package."""

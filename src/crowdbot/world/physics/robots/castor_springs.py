@@ -98,11 +98,11 @@ def soften_castors(model: Any, robots: Mapping[str, Robot], travel: float = TRAV
 
 def _places(model: Any, data: Any, root: int, castors: Sequence[int]) -> Floats:
     """Return the places ``[C, 3]`` [m] of castors in the frame of the root link."""
-    found = np.array(model.geom_pos[castors])
+    places = np.array(model.geom_pos[castors])
     turning = model.geom_bodyid[castors] != root
     away = data.geom_xpos[castors][turning] - data.xpos[root]
-    found[turning] = away @ data.xmat[root].reshape(3, 3)
-    return found
+    places[turning] = away @ data.xmat[root].reshape(3, 3)
+    return places
 
 
 def _level(

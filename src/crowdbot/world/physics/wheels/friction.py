@@ -298,9 +298,9 @@ class WheelFriction:
 
     def loads(self, data: Any) -> Floats:
         """Return the normal forces ``[W]`` [N] of the wheels in the last step."""
-        found = np.zeros(len(self))
-        _weigh(data.contact.geom, data.contact.efc_address, data.efc_force, self.wheel_of, found)
-        return found
+        result = np.zeros(len(self))
+        _weigh(data.contact.geom, data.contact.efc_address, data.efc_force, self.wheel_of, result)
+        return result
 
     def smooth_loads(self, before: Floats, data: Any, step: float) -> Floats:
         """Return the loads ``[W]`` [N] of the wheels, smoothed over :data:`SETTLE`.
@@ -313,7 +313,7 @@ class WheelFriction:
             data: data of the engine.
             step: time step of the engine [s].
         """
-        found = self.loads(data)
+        loads = self.loads(data)
         if not self.skids or not before.any():
-            return found
-        return np.asarray(before - math.expm1(-step / SETTLE) * (found - before))
+            return loads
+        return np.asarray(before - math.expm1(-step / SETTLE) * (loads - before))

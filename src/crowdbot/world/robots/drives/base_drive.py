@@ -58,7 +58,7 @@ def rollers_of(base: BaseKind, wheel: FoundWheel) -> float | None:
         return 0.0
     if base.kind != "mecanum":
         return None
-    centre = np.mean([one.center for one in base.wheels], axis=0)
+    centre = np.mean([wheel.center for wheel in base.wheels], axis=0)
     ahead, aside = (wheel.center - centre)[:2].tolist()
     return -math.copysign(math.pi / 4.0, ahead * aside)
 

@@ -135,4 +135,4 @@ class CommandDelay:
         waiting = [*pending, Pending(self.latency, command)]
         while waiting and waiting[0].wait <= 1e-9:
             now = waiting.pop(0).command
-        return tuple(Pending(one.wait - dt, one.command) for one in waiting), now
+        return tuple(Pending(item.wait - dt, item.command) for item in waiting), now
