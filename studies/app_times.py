@@ -291,9 +291,9 @@ async def _simulated(session: aiohttp.ClientSession, url: str) -> float:
     async with session.ws_connect(url, max_msg_size=0) as socket:
         async for message in socket:
             if message.type == aiohttp.WSMsgType.TEXT:
-                loads = json.loads(message.data)
-                if loads.get("event") == "hello":
-                    return float(loads["data"]["desks"]["simulator"]["status"]["time"])
+                document = json.loads(message.data)
+                if document.get("event") == "hello":
+                    return float(document["data"]["desks"]["simulator"]["status"]["time"])
     raise RuntimeError("the server sends no greeting")
 
 

@@ -106,10 +106,10 @@ def test_qolo_keeps_its_wheels_on_the_floor():
 
 def test_the_command_prints_a_table_or_json(capsys, tmp_path):
     assert main(["bench", "drives", "--robot", "differential", "--quick", "--json"]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["rows"][0]["robot"] == "differential"
-    assert loads["rows"][0]["failures"] == []
-    assert loads["bars"] == dict(DRIVE_BARS)
+    document = json.loads(capsys.readouterr().out)
+    assert document["rows"][0]["robot"] == "differential"
+    assert document["rows"][0]["failures"] == []
+    assert document["bars"] == dict(DRIVE_BARS)
 
 
 @pytest.mark.parametrize(

@@ -72,22 +72,22 @@ def test_a_library_is_compiled_from_its_source_and_measured(source: Path, tmp_pa
     words = ["bench", "engines", "--quick", "--repeats", "2", "--rvo2", str(source), "--json", "--out", str(out)]
     assert main(words) == 0
     printed = capsys.readouterr()
-    loads = json.loads(printed.out)
-    assert json.loads(out.read_text()) == loads
-    rows = [(row["model"], row["engine"], row["people"], row["order"], row["threads"]) for row in loads["rows"]]
+    document = json.loads(printed.out)
+    assert json.loads(out.read_text()) == document
+    rows = [(row["model"], row["engine"], row["people"], row["order"], row["threads"]) for row in document["rows"]]
     assert ("orca", "RVO2", 1000, "random", 1) in rows
     assert ("orca", "RVO2", 1000, "sorted", 1) in rows
-    for row in loads["rows"]:
+    for row in document["rows"]:
         assert row["theirs"] < row["ours"], "adding 1 is faster than ORCA"
         assert 0.0 < row["low"] <= row["ratio"] <= row["high"] < 1.0
-    assert loads["million"]["people"] == 2000
-    assert loads["million"]["seconds"] > 0.0
-    assert loads["million"]["megabytes"] > 50.0
-    assert set(loads["missing"]) == {"JuPedSim", "navground", "PySocialForce"}
+    assert document["million"]["people"] == 2000
+    assert document["million"]["seconds"] > 0.0
+    assert document["million"]["megabytes"] > 50.0
+    assert set(document["missing"]) == {"JuPedSim", "navground", "PySocialForce"}
     assert logging.root.manager.disable == logging.NOTSET  # messages of others are silent only while one is imported
     assert "crowdbot: the comparison with JuPedSim needs the extra [peers]" in printed.err
-    assert "alternate" in loads["protocol"]
-    assert any("from source" in engine for engine in loads["protocols"])
+    assert "alternate" in document["protocol"]
+    assert any("from source" in engine for engine in document["protocols"])
 
 
 @pytest.mark.live

@@ -38,25 +38,25 @@ def test_the_command_prints_our_rows_without_the_peers(capsys, tmp_path):
     out = tmp_path / "environments.json"
     assert main(["bench", "environments", "--quick", "--repeats", "1", "--json", "--out", str(out)]) == 0
     printed = capsys.readouterr()
-    loads = json.loads(printed.out)
-    assert json.loads(out.read_text()) == loads
+    document = json.loads(printed.out)
+    assert json.loads(out.read_text()) == document
     assert f"crowdbot: the comparison with navground needs the extra [peers]: {INSTALL}" in printed.err
     assert f"crowdbot: the comparison with ir-sim needs the extra [peers]: {INSTALL}" in printed.err
-    assert set(loads["missing"]) == {"navground", "ir-sim"}
-    assert loads["versions"] == {}
-    assert [row["name"] for row in loads["rows"]] == ROWS
-    for row in loads["rows"]:
+    assert set(document["missing"]) == {"navground", "ir-sim"}
+    assert document["versions"] == {}
+    assert [row["name"] for row in document["rows"]] == ROWS
+    for row in document["rows"]:
         assert row["peers"] == []
         assert row["protocol"]
         assert all(value > 0.0 and math.isfinite(value) for value in row["rate"].values())
         assert math.isclose(row["cpu_milliseconds_per_unit"] * row["rate"]["per_cpu_second"], 1e3)
-    assert "CPU seconds" in loads["protocol"]
-    assert "setprofile" in loads["calls"]["protocol"]
-    assert [row["environments"] for row in loads["calls"]["rows"]] == [1, 4]
-    assert all(row["python_calls"] > 0 for row in loads["calls"]["rows"])
-    assert len(loads["trials"]["rows"]) == 2
-    assert all(row["reason"] == "" and row["ratio"] > 0.0 for row in loads["trials"]["rows"])
-    assert all(row["agents"] > 0 and row["batch"]["per_second"] > 0.0 for row in loads["trials"]["rows"])
+    assert "CPU seconds" in document["protocol"]
+    assert "setprofile" in document["calls"]["protocol"]
+    assert [row["environments"] for row in document["calls"]["rows"]] == [1, 4]
+    assert all(row["python_calls"] > 0 for row in document["calls"]["rows"])
+    assert len(document["trials"]["rows"]) == 2
+    assert all(row["reason"] == "" and row["ratio"] > 0.0 for row in document["trials"]["rows"])
+    assert all(row["agents"] > 0 and row["batch"]["per_second"] > 0.0 for row in document["trials"]["rows"])
 
 
 @pytest.mark.usefixtures("no_peers")

@@ -150,7 +150,7 @@ def test_requests_and_responses_of_simulation_interfaces_fit_their_types(monkeyp
     monkeypatch.setitem(sys.modules, "simulation_interfaces.msg", package)
     for name in ("std_msgs", "geometry_msgs"):
         importlib.import_module(f"{name}.msg")
-    kinds = [fielddef for fielddef in interface_store().fielddefs if fielddef.startswith("simulation_interfaces/")]
+    kinds = [kind for kind in interface_store().fielddefs if kind.startswith("simulation_interfaces/")]
     for kind in kinds:
         setattr(package, kind.rpartition("/")[2], ros_class(kind))
     driver = MemoryTransport([])

@@ -22,16 +22,16 @@ def test_roslib_reads_every_compression_and_uses_services_and_actions(tmp_path):
         command = ["node", "client.mjs", str(server.port)]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    loads = json.loads(done.stdout)
-    assert "/robot/scan" in loads["topics"]
-    assert loads["details"] == ["geometry_msgs/msg/Twist", "geometry_msgs/msg/Vector3"]
-    assert loads["scans"] == {
+    document = json.loads(done.stdout)
+    assert "/robot/scan" in document["topics"]
+    assert document["details"] == ["geometry_msgs/msg/Twist", "geometry_msgs/msg/Vector3"]
+    assert document["scans"] == {
         "none": ["Array", 360],
         "png": ["Array", 360],
         "cbor": ["Float32Array", 360],
         "cbor-raw": ["secs", "nsecs", "bytes"],
     }
-    assert loads["x"] > -4.4
-    assert loads["sum"] == 5
-    assert loads["feedback"] == 20
-    assert loads["result"]["result"]["result"] == 1
+    assert document["x"] > -4.4
+    assert document["sum"] == 5
+    assert document["feedback"] == 20
+    assert document["result"]["result"]["result"] == 1

@@ -27,32 +27,32 @@ def test_tables_figures_and_plots_are_written(recording, tmp_path, capsys):
     words = ["measure", str(recording), *AREA, "--line", "4", "2", "4", "0", "--passage", "1", "--steady", "1", "4"]
     methods = ["--methods", "individual", "area", "diagram", "line", "passing", "profiles", "encounters", "pairs"]
     assert main([*words, *methods, "lanes", "stops", "headways", "--out", str(out), "--json"]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    figures = loads["recordings"][0]["figures"]
+    document = json.loads(capsys.readouterr().out)
+    figures = document["recordings"][0]["figures"]
     assert figures["mean_speed"] == pytest.approx(1.0, rel=0.01)
     assert figures["people"] == 24
     assert figures["lane_order"] is not None
     files = {file.name for file in out.iterdir()}
-    assert {str(out / name) for name in files} == set(loads["files"])
+    assert {str(out / name) for name in files} == set(document["files"])
     assert {"area.csv", "diagram.csv", "n-t.png", "profile-density.png", "measurements.json", "headways.csv"} <= files
     assert all((out / name).stat().st_size > 3000 for name in files if name.endswith(".png"))
     with (out / "area.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert rows[0]["recording"] == "walk.csv"
     assert float(rows[3]["voronoi_density"]) > 0.0
-    assert json.loads((out / "measurements.json").read_text())["recordings"] == loads["recordings"]
+    assert json.loads((out / "measurements.json").read_text())["recordings"] == document["recordings"]
 
 
 def test_starts_of_a_trial_have_means_with_intervals(tmp_path, capsys):
     words = ["measure", "crossing-flows", "--starts", "2", "--methods", "individual", "diagram", "--json"]
     words += ["--out", str(tmp_path), "--no-plots"]
     assert main(words) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert [one["name"] for one in loads["recordings"]] == ["crossing-flows, seed 1", "crossing-flows, seed 2"]
+    document = json.loads(capsys.readouterr().out)
+    assert [one["name"] for one in document["recordings"]] == ["crossing-flows, seed 1", "crossing-flows, seed 2"]
     with (tmp_path / "diagram-pooled.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert all(float(row["low"]) <= float(row["speed"]) <= float(row["high"]) for row in rows)
-    mean = loads["mean"]["mean_speed"]
+    mean = document["mean"]["mean_speed"]
     assert mean["starts"] == 2
     assert mean["low"] <= mean["mean"] <= mean["high"]
     assert 0.3 < mean["mean"] < 2.0

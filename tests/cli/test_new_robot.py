@@ -44,16 +44,16 @@ def write(folder, radius):
 
 def test_json_tells_every_value_and_where_it_is_from(cart, capsys):
     assert main(["new", "robot", "cart.urdf", "--json"]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    rows = {row["what"]: row for row in loads["table"]}
-    assert (loads["folder"], loads["trial"], loads["kind"]) == ("cart", "cart-hall.xml", "differential")
-    assert loads["confirmed"] is False
+    document = json.loads(capsys.readouterr().out)
+    rows = {row["what"]: row for row in document["table"]}
+    assert (document["folder"], document["trial"], document["kind"]) == ("cart", "cart-hall.xml", "differential")
+    assert document["confirmed"] is False
     assert rows["max-speed"]["status"] == "guess"
     assert rows["max-turn-rate"]["status"] == "derived"
     assert rows["mass of tower"]["status"] == "guess"
-    assert loads["mass"] == pytest.approx(11.1)
-    assert any("'tower' moves but neither it nor a link fixed to it has a mass" in text for text in loads["remarks"])
-    assert json.loads((cart / "cart" / "import.json").read_text())["table"] == loads["table"]
+    assert document["mass"] == pytest.approx(11.1)
+    assert any("'tower' moves but neither it nor a link fixed to it has a mass" in text for text in document["remarks"])
+    assert json.loads((cart / "cart" / "import.json").read_text())["table"] == document["table"]
 
 
 def test_values_are_changed_by_set(cart, capsys):

@@ -11,14 +11,14 @@ def test_scans_of_a_trial_are_predicted_with_intervals_and_a_plot(tmp_path, caps
     plot = tmp_path / "scans.png"
     words = ["predict", "--perception", "crossing-flows", "--duration", "8", "--starts", "2", "--seed", "1", "--json"]
     assert main([*words, "--plot", str(plot)]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["seeds"] == [1, 2]
-    assert loads["horizons"] == [0.1, 0.5, 1.0, 2.0, 3.0]
-    assert list(loads["scores"]) == ["last-scan", "moved-scan", "tracked-scene", "learned-scene", "true-people"]
-    at_one_second = {name: item["range_error"][2]["value"] for name, item in loads["scores"].items()}
+    document = json.loads(capsys.readouterr().out)
+    assert document["seeds"] == [1, 2]
+    assert document["horizons"] == [0.1, 0.5, 1.0, 2.0, 3.0]
+    assert list(document["scores"]) == ["last-scan", "moved-scan", "tracked-scene", "learned-scene", "true-people"]
+    at_one_second = {name: item["range_error"][2]["value"] for name, item in document["scores"].items()}
     assert at_one_second["tracked-scene"] < 0.7 * at_one_second["moved-scan"]
     assert at_one_second["true-people"] < at_one_second["tracked-scene"]
-    late = {name: item["time_to_collision_error"][2]["value"] for name, item in loads["scores"].items()}
+    late = {name: item["time_to_collision_error"][2]["value"] for name, item in document["scores"].items()}
     assert 0.0 < late["true-people"] < late["moved-scan"]
     assert plot.stat().st_size > 20_000
 
@@ -31,9 +31,9 @@ def test_an_episode_is_predicted_and_the_motion_of_the_robot_may_be_unknown(tmp_
     errors = []
     for ego in ("known", "predicted"):
         assert main([*words, "--ego", ego]) == 0
-        loads = json.loads(capsys.readouterr().out)
-        assert loads["ego"] == ego
-        errors.append(loads["scores"]["moved-scan"]["range_error"][4]["value"])
+        document = json.loads(capsys.readouterr().out)
+        assert document["ego"] == ego
+        errors.append(document["scores"]["moved-scan"]["range_error"][4]["value"])
     assert errors[0] != errors[1]
 
 

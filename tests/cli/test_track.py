@@ -13,11 +13,11 @@ def test_a_trial_is_tracked_with_intervals_and_a_plot(tmp_path, capsys):
     plot = tmp_path / "tracks.png"
     words = ["track", "crossing-flows", "--duration", "4", "--starts", "2", *TRACKERS, "--plot", str(plot), "--json"]
     assert main(words) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["seeds"] == [1, 2]
-    assert loads["sensor"] == "robot/scan"
-    assert list(loads["scores"]) == TRACKERS[1:]
-    for scores in loads["scores"].values():
+    document = json.loads(capsys.readouterr().out)
+    assert document["seeds"] == [1, 2]
+    assert document["sensor"] == "robot/scan"
+    assert list(document["scores"]) == TRACKERS[1:]
+    for scores in document["scores"].values():
         assert scores["mota"]["value"] > 0.8
         assert scores["mota"]["runs"] == 2
         assert scores["mota"]["low"] <= scores["mota"]["value"] <= scores["mota"]["high"]
@@ -41,8 +41,8 @@ def test_the_map_removes_false_tracks(capsys):
     shares = []
     for extra in ([], ["--no-map"]):
         assert main([*words, *extra]) == 0
-        loads = json.loads(capsys.readouterr().out)
-        shares.append(loads["scores"]["global-nearest-neighbor"]["false_tracks"]["value"])
+        document = json.loads(capsys.readouterr().out)
+        shares.append(document["scores"]["global-nearest-neighbor"]["false_tracks"]["value"])
     assert shares[0] < shares[1]
 
 

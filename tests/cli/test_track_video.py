@@ -81,12 +81,12 @@ def test_people_of_a_video_are_tracked_and_predicted_in_metres(folder, capsys):
     plot = folder / "map.png"
     files = ["--out", f"{folder}/found", "--plot", str(plot), "--truth", f"{folder}/truth.csv"]
     assert main(words(folder, *files, "--steps", "4", "--json")) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["frames"] == FRAMES
-    assert loads["tracks"] == 1
-    assert loads["scores"]["motp"] < 0.25
-    assert loads["scores"]["mota"] > 0.7
-    assert loads["scores"]["error_at_1.6_s"] < 0.8
+    document = json.loads(capsys.readouterr().out)
+    assert document["frames"] == FRAMES
+    assert document["tracks"] == 1
+    assert document["scores"]["motp"] < 0.25
+    assert document["scores"]["mota"] > 0.7
+    assert document["scores"]["error_at_1.6_s"] < 0.8
     assert plot.stat().st_size > 20_000
     with (folder / "found" / "tracks.csv").open() as lines:
         rows = list(csv.DictReader(lines))

@@ -85,9 +85,9 @@ def test_a_worker_of_a_cluster_that_dies_does_not_change_the_table(tmp_path, mon
     there = load_evaluation(tmp_path / "cluster.json")
     assert [repr(cell.runs) for cell in there.cells] == [repr(cell.runs) for cell in alone.cells]
     assert not there.failures
-    loads = json.loads((tmp_path / "found.json").read_text())
-    assert loads["messages"][0] == "1 is refused"
-    assert loads["messages"][1].startswith("a job was lost on the cluster in 3 attempts: ")
-    assert loads["stays"]
-    assert loads["ended"]
-    assert loads["local"] == [[0, 3], [1, 4]]
+    document = json.loads((tmp_path / "found.json").read_text())
+    assert document["messages"][0] == "1 is refused"
+    assert document["messages"][1].startswith("a job was lost on the cluster in 3 attempts: ")
+    assert document["stays"]
+    assert document["ended"]
+    assert document["local"] == [[0, 3], [1, 4]]

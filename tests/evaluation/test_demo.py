@@ -100,9 +100,9 @@ def _pixels(path):
 
 def test_the_command_prints_one_object(tmp_path, capsys):
     assert main(["demo", "--out", str(tmp_path / "here"), "--seed", "4", "--json"]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["seed"] == 4
-    assert set(loads["prediction"]) == {"constant-velocity", "constant-acceleration", "kalman", "simulated"}
+    document = json.loads(capsys.readouterr().out)
+    assert document["seed"] == 4
+    assert set(document["prediction"]) == {"constant-velocity", "constant-acceleration", "kalman", "simulated"}
 
 
 @pytest.mark.parametrize("name", ["episode.mcap", "report.html"])

@@ -116,11 +116,11 @@ def test_the_folder_of_a_split_or_of_the_data_set_is_found(hall, tmp_path):
 def test_the_command_scores_a_folder(hall, tmp_path, capsys):
     plot = tmp_path / "scans.png"
     assert main(["predict", "--perception", str(hall.parent), "--json", "--plot", str(plot)]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert list(loads["scores"]) == ["last-scan", "moved-scan", "tracked-scene", "learned-scene"]
-    assert (loads["source"], loads["ego"], loads["past"], loads["dilation"]) == ("test", "predicted", 10, 0)
-    assert loads["horizons"] == [0.1, 0.3, 0.5, 0.7, 1.0]
-    late = {name: one["range_error"][4]["value"] for name, one in loads["scores"].items()}
+    document = json.loads(capsys.readouterr().out)
+    assert list(document["scores"]) == ["last-scan", "moved-scan", "tracked-scene", "learned-scene"]
+    assert (document["source"], document["ego"], document["past"], document["dilation"]) == ("test", "predicted", 10, 0)
+    assert document["horizons"] == [0.1, 0.3, 0.5, 0.7, 1.0]
+    late = {name: one["range_error"][4]["value"] for name, one in document["scores"].items()}
     assert late["tracked-scene"] < late["last-scan"]
     assert plot.stat().st_size > 20_000
     words = ["predict", "--perception", str(hall), "--scan-predictor", "last-scan", "--horizons", "0.2", "0.4"]

@@ -104,9 +104,9 @@ def test_placements_of_known_values():
 def test_the_command_measures_and_simulates(clip, tmp_path, capsys):
     words = ["--fps", "10", "--json", "--out", str(tmp_path / "logs")]
     assert main(["evaluate", "--logs", str(clip), *words]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert json.loads((tmp_path / "logs/logs.json").read_text()) == loads
-    assert loads["logs"][0]["metrics"]["success"] == 1.0
+    document = json.loads(capsys.readouterr().out)
+    assert json.loads((tmp_path / "logs/logs.json").read_text()) == document
+    assert document["logs"][0]["metrics"]["success"] == 1.0
     out = tmp_path / "real"
     options = ["--fps", "10", "--seeds", "0:12", "--out", str(out)]
     assert main(["evaluate", "--real", str(clip), *options]) == 0

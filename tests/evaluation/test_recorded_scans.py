@@ -121,10 +121,10 @@ def test_trackers_are_scored_behind_each_detector(tmp_path, capsys):
     file = write_frog(tmp_path / "walk.h5")
     words = ["--tracker", "global-nearest-neighbor", "joint-probabilistic-data-association", "--json"]
     assert main(["track", str(file), *words]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["people"] == 36
-    assert len(loads["scores"]) == 3
-    followed = loads["scores"]["lidar-clusters, global-nearest-neighbor"]
+    document = json.loads(capsys.readouterr().out)
+    assert document["people"] == 36
+    assert len(document["scores"]) == 3
+    followed = document["scores"]["lidar-clusters, global-nearest-neighbor"]
     assert followed["recall"] > 0.7
     assert followed["error"] < 0.1
 
@@ -219,8 +219,8 @@ def test_scans_of_lcas_have_their_people(tmp_path, kind):
 
 def test_a_folder_of_lcas_is_scored_with_clusters_of_points(tmp_path, capsys):
     assert main(["track", str(write_lcas(tmp_path / "scans")), "--json"]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["scores"]["cloud-clusters"]["recall"] == 1.0
+    document = json.loads(capsys.readouterr().out)
+    assert document["scores"]["cloud-clusters"]["recall"] == 1.0
     assert main(["track", str(tmp_path / "scans"), "--detector", "lidar-clusters"]) == 2
     assert "PointCloud" in capsys.readouterr().err
     assert main(["track", str(tmp_path / "scans"), "--by", "distance"]) == 2

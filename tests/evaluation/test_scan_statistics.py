@@ -73,8 +73,8 @@ def test_wrong_readings_are_one_sentence():
 def test_the_command_prints_bands_of_a_trial(capsys):
     words = ["track", "crossing-flows", "--duration", "1", "--statistics"]
     assert main([*words, "--json"]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    returns = [one["returns"] for one in loads["bands"] if one["people"]]
+    document = json.loads(capsys.readouterr().out)
+    returns = [one["returns"] for one in document["bands"] if one["people"]]
     assert returns == sorted(returns, reverse=True)
     assert main(words) == 0
     assert "returns a person" in capsys.readouterr().out

@@ -147,10 +147,10 @@ def test_ros_2_gives_the_parameters_to_the_nodes_of_the_launch_file(distribution
     wanted = nav2(distribution)
     done = subprocess.run([sys.executable, "-c", READ, file, *wanted], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr[-2000:]
-    loads = json.loads(done.stdout.splitlines()[-1])
-    for rows in loads.values():
+    document = json.loads(done.stdout.splitlines()[-1])
+    for rows in document.values():
         rows.pop("start_type_description_service", None)  # of every node
-    assert loads == wanted
+    assert document == wanted
 
 
 class Action:

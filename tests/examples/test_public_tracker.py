@@ -59,7 +59,7 @@ def test_it_is_scored_beside_the_built_in_tracker_on_a_recorded_episode(tmp_path
     capsys.readouterr()
     words = ["--tracker", "global-nearest-neighbor", f"{FILE}:StoneSoup", "--json"]
     assert main(["track", str(tmp_path / "out" / "episode.mcap"), *words]) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["source"] == "episode.mcap"
-    assert list(loads["scores"]) == ["global-nearest-neighbor", f"{FILE}:StoneSoup"]
-    assert loads["scores"][f"{FILE}:StoneSoup"]["mota"]["value"] > 0.4
+    document = json.loads(capsys.readouterr().out)
+    assert document["source"] == "episode.mcap"
+    assert list(document["scores"]) == ["global-nearest-neighbor", f"{FILE}:StoneSoup"]
+    assert document["scores"][f"{FILE}:StoneSoup"]["mota"]["value"] > 0.4

@@ -29,13 +29,13 @@ def episode(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_coco_has_the_recorded_image_and_everybody_in_it(episode: Path, tmp_path: Path) -> None:
     assert main(["export", str(episode), "--labels", "coco", "--to", str(tmp_path / "coco")]) == 0
-    loads = json.loads((tmp_path / "coco" / "coco.json").read_text(encoding="utf-8"))
-    assert len(loads["images"]) == 1
-    assert len(loads["annotations"]) == 3
-    assert all(one["num_keypoints"] > 0 for one in loads["annotations"])
+    document = json.loads((tmp_path / "coco" / "coco.json").read_text(encoding="utf-8"))
+    assert len(document["images"]) == 1
+    assert len(document["annotations"]) == 3
+    assert all(one["num_keypoints"] > 0 for one in document["annotations"])
     assert main(["export", str(episode), "--table", "pictures", "--to", str(tmp_path / "pictures.csv")]) == 0
     (recorded,) = (tmp_path / "pictures-images").glob("*.png")
-    with Image.open(tmp_path / "coco" / loads["images"][0]["file_name"]) as one, Image.open(recorded) as other:
+    with Image.open(tmp_path / "coco" / document["images"][0]["file_name"]) as one, Image.open(recorded) as other:
         np.testing.assert_array_equal(np.asarray(one), np.asarray(other))
 
 

@@ -38,8 +38,8 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def people(data: Path) -> list[dict[str, Any]]:
-    loads = json.loads((data / "coco.json").read_text(encoding="utf-8"))
-    return [one for one in loads["annotations"] if one["image_id"] == 1]
+    document = json.loads((data / "coco.json").read_text(encoding="utf-8"))
+    return [one for one in document["annotations"] if one["image_id"] == 1]
 
 
 def test_keypoints_lie_in_the_box_of_the_pixels_and_heads_are_up(data: Path) -> None:

@@ -70,7 +70,7 @@ def test_names_are_those_that_python_gives():
     scope = {}
     exec(SOURCE, scope)
     assert scope["Car"].drive.__code__.co_qualname == "Car.drive"
-    inner = next(co_const for co_const in scope["Car"].drive.__code__.co_consts if hasattr(co_const, "co_qualname"))
+    inner = next(constant for constant in scope["Car"].drive.__code__.co_consts if hasattr(constant, "co_qualname"))
     assert inner.co_qualname == calls.place_at(SOURCE, line("            return table()")).name
 
 

@@ -40,5 +40,5 @@ print(json.dumps({key: [level(), entry(key)["digest"]] for key in sys.argv[1:]})
 """
     words, place = [sys.executable, "-c", program, *SHORT], level_environment("x86-64-v3")
     done = subprocess.run(words, env=place, cwd=FILE.parents[1], capture_output=True, text=True, check=True)
-    loads = json.loads(done.stdout.splitlines()[-1])
-    assert loads == {key: ["x86-64-v3", RUNS[key]["digest"]["x86-64-v3"]] for key in SHORT}
+    document = json.loads(done.stdout.splitlines()[-1])
+    assert document == {key: ["x86-64-v3", RUNS[key]["digest"]["x86-64-v3"]] for key in SHORT}

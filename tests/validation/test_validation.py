@@ -327,5 +327,5 @@ def test_the_command_writes_the_page(done, capsys):
     assert "of 11" in shown.out
     options.json = True
     assert command.main(options) == 0
-    loads = json.loads(capsys.readouterr().out)
-    assert loads["models"]["orca"]["single-file"]["passed"] is False
+    document = json.loads(capsys.readouterr().out)
+    assert document["models"]["orca"]["single-file"]["passed"] is False

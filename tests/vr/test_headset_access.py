@@ -93,10 +93,10 @@ def test_the_window_of_a_headset_may_look_answer_and_stop_only(tmp_path):
                     message = await asyncio.wait_for(socket.receive(), 60)
                     if message.type != aiohttp.WSMsgType.TEXT:
                         continue
-                    loads = json.loads(message.data)
-                    if loads.get("id") == number:
-                        return loads
-                    seen.add(loads["event"])
+                    document = json.loads(message.data)
+                    if document.get("id") == number:
+                        return document
+                    seen.add(document["event"])
 
             hello = json.loads((await socket.receive()).data)
             seen = set()

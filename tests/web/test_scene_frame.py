@@ -172,16 +172,16 @@ def test_beams_end_where_the_reading_has_its_points(hall):
 
 
 def test_description_is_json_of_everything_that_stands_still(hall):
-    loads = json.loads(json.dumps(scene_description(hall), allow_nan=False))
-    assert [one["kind"] for one in loads["stage"]["props"]] == ["cube", "table", "tree"]
-    assert [wall["inner"] for wall in loads["stage"]["walls"]].count(True) == 1
-    assert loads["stage"]["doors"][0]["width"] == pytest.approx(2.0)
-    assert {zone["kind"] for zone in loads["zones"]} == {"start", "goal"}
-    people = loads["people"]
+    document = json.loads(json.dumps(scene_description(hall), allow_nan=False))
+    assert [one["kind"] for one in document["stage"]["props"]] == ["cube", "table", "tree"]
+    assert [wall["inner"] for wall in document["stage"]["walls"]].count(True) == 1
+    assert document["stage"]["doors"][0]["width"] == pytest.approx(2.0)
+    assert {zone["kind"] for zone in document["zones"]} == {"start", "goal"}
+    people = document["people"]
     assert len(people["body"]) == len(people["colors"]) == 7
     assert people["rider"].count(True) == 1
-    assert all(len(item) == 6 * len(loads["regions"]) for item in people["colors"])
-    low_x, low_y, high_x, high_y = loads["bounds"]
+    assert all(len(item) == 6 * len(document["regions"]) for item in people["colors"])
+    low_x, low_y, high_x, high_y = document["bounds"]
     assert low_x <= -6 < 6 <= high_x
     assert low_y <= -4 < 4 <= high_y
 

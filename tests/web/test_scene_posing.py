@@ -90,13 +90,13 @@ def test_skins_of_the_page_are_those_of_the_simulation(tmp_path):
 
 
 def test_frames_are_blended_by_person_and_on_the_shorter_way(tmp_path):
-    loads = json.loads(run_node(tmp_path, BLEND, str(SOURCES)))
-    assert loads["time"] == 1.5
-    assert loads["ids"] == [8, 9]
-    assert loads["place"] == [6, 7, 0, 0, 0, 1, 1, 1, 0, 0]
-    assert loads["bone"] in ([-32767, 0, 0, 0], [32767, 0, 0, 0])
-    assert abs(abs(loads["heading"]) - np.pi) < 1e-6
-    assert loads["x"] == 1
-    assert loads["quaternion"][0] == loads["quaternion"][3] > 0
-    assert loads["first"]
-    assert loads["last"]
+    document = json.loads(run_node(tmp_path, BLEND, str(SOURCES)))
+    assert document["time"] == 1.5
+    assert document["ids"] == [8, 9]
+    assert document["place"] == [6, 7, 0, 0, 0, 1, 1, 1, 0, 0]
+    assert document["bone"] in ([-32767, 0, 0, 0], [32767, 0, 0, 0])
+    assert abs(abs(document["heading"]) - np.pi) < 1e-6
+    assert document["x"] == 1
+    assert document["quaternion"][0] == document["quaternion"][3] > 0
+    assert document["first"]
+    assert document["last"]

@@ -185,10 +185,10 @@ def recordings(options: argparse.Namespace, paths: Sequence[Path] | None = None)
 
 def print_notes(found: tuple[Recording, ...]) -> None:
     """Print what was understood of each recording, in two lines, and the notes on it, without duplicates."""
-    for fromkey in dict.fromkeys(found):
-        tracks = fromkey.tracks
+    for entry in dict.fromkeys(found):
+        tracks = entry.tracks
         for sentence in (*describe_tracks(tracks), *((tracks.note,) if tracks.note else ())):
-            note(f"{fromkey.name}: {sentence}")
+            note(f"{entry.name}: {sentence}")
 
 
 def describe_tracks(tracks: Trajectories) -> tuple[str, str]:

@@ -187,8 +187,8 @@ def result_schema() -> dict[str, Any]:
     {'const': 'crowdbot-evaluation/1'}
     """
     file = importlib.resources.files("crowdbot").joinpath("assets", "evaluation", "result.schema.json")
-    loads: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    return loads
+    document: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return document
 
 
 def provenance() -> dict[str, Any]:

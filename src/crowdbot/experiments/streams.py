@@ -182,7 +182,7 @@ class StreamOutlets:
 
     def _tell_contacts(self, frame: StepRecord, names: Mapping[int, str]) -> None:
         """Send the contacts that begin in a step."""
-        now = frozenset((touche.robot, touche.other) for touche in frame.touches)
+        now = frozenset((touch.robot, touch.other) for touch in frame.touches)
         for robot, other in sorted(now - self._touching):
             with_whom = names.get(other, "wall" if other < 0 else f"person {other}")
             time = frame.nanoseconds / 1e9

@@ -164,6 +164,5 @@ class StepMessages:
     def _touches(self, frame: StepRecord) -> list[tuple[str, str, float]]:
         names = self.names | {WALL: "wall"}
         return [
-            (names[touche.robot], names.get(touche.other, str(touche.other)), touche.clearance)
-            for touche in frame.touches
+            (names[touch.robot], names.get(touch.other, str(touch.other)), touch.clearance) for touch in frame.touches
         ]

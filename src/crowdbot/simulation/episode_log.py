@@ -183,7 +183,7 @@ class EpisodeLog(EpisodeStatistics):
         if not (touches or forces or collisions or orders):
             return
         time = nanoseconds / 1e9
-        self._touching |= {who for touche in touches for who in (touche.robot, touche.other)}
+        self._touching |= {who for touch in touches for who in (touch.robot, touch.other)}
         self.orders += [(tick, order) for order in orders]
         self.contacts += [(time, contact) for contact in touches]
         self.forces += [(time, force) for force in forces]

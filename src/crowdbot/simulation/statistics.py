@@ -80,7 +80,7 @@ class EpisodeStatistics:
             if isinstance(order, GoalOrder) and order.tolerance is not None:
                 names = [robot.name for robot in self.trial.robots]
                 self.travels[names.index(order.robot)].tolerance = float(order.tolerance)
-        self._touching |= {who for touche in frame.touches for who in (touche.robot, touche.other)}
+        self._touching |= {who for touch in frame.touches for who in (touch.robot, touch.other)}
         self.collisions += frame.collisions
         self.falls += frame.falls
         if frame.due:

@@ -32,7 +32,7 @@ def local_addresses() -> tuple[str, ...]:
         found.append(probe.getsockname()[0])
     with contextlib.suppress(OSError):
         found += [str(item[4][0]) for item in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)]
-    return tuple(fromkey for fromkey in dict.fromkeys(found) if not ipaddress.ip_address(fromkey).is_loopback)
+    return tuple(address for address in dict.fromkeys(found) if not ipaddress.ip_address(address).is_loopback)
 
 
 def certificate_files(folder: Path | None = None, addresses: tuple[str, ...] | None = None) -> tuple[Path, Path]:

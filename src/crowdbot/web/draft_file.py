@@ -38,7 +38,7 @@ class DraftFile:
     def load(self) -> dict[str, Any]:
         """Return the state, empty if there is none or it is damaged."""
         try:
-            loads = json.loads(self._path.read_text(encoding="utf-8"))
+            document = json.loads(self._path.read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return {}
-        return loads if isinstance(loads, dict) else {}
+        return document if isinstance(document, dict) else {}

@@ -131,10 +131,10 @@ def add_services(node: Any, inbox: Inbox, sender: str) -> tuple[str, ...]:
 
 def _plain_callback(service: PlainService, node: Any, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]:
     def call(request: Any, response: Any) -> Any:
-        simple_queue: queue.SimpleQueue[str] = queue.SimpleQueue()
+        answers: queue.SimpleQueue[str] = queue.SimpleQueue()
         try:
-            service.call(inbox, simple_queue.put, sender)
-            problem = simple_queue.get(timeout=ANSWER_TIME)
+            service.call(inbox, answers.put, sender)
+            problem = answers.get(timeout=ANSWER_TIME)
         except (InputError, queue.Empty) as error:
             problem = str(error) or UNANSWERED
         if service.kind == "Trigger":
@@ -148,10 +148,10 @@ def _plain_callback(service: PlainService, node: Any, inbox: Inbox, sender: str)
 
 def _callback(name: str, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]:
     def call(request: Any, response: Any) -> Any:
-        simple_queue: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        answers: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         try:
-            inbox.call(name, message_fields(request), simple_queue.put, sender)
-            fields = simple_queue.get(timeout=ANSWER_TIME)
+            inbox.call(name, message_fields(request), answers.put, sender)
+            fields = answers.get(timeout=ANSWER_TIME)
         except (InputError, queue.Empty) as error:
             fields = result(FAILED, str(error) or UNANSWERED)
         return fill_message(response, fields)

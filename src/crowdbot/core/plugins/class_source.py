@@ -290,9 +290,7 @@ def _placeholder(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Any:
     def unread(*args: Any, **more: Any) -> NoReturn:
         raise UnreadableValue(node.name)
 
-    names = dict.fromkeys(
-        posonlyarg.arg for posonlyarg in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)
-    )
+    names = dict.fromkeys(argument.arg for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs))
     rows = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in names]
     unread.__signature__ = inspect.Signature(rows)  # type: ignore[attr-defined]
     marks = ast.unparse(ast.Tuple([*node.decorator_list]))

@@ -69,7 +69,7 @@ def detect_groups(log: RobotLog) -> list[list[int]]:
         for b in (a + 1 + np.flatnonzero(pair)).tolist():
             old, new = leader[b], leader[a]
             leader = [new if item == old else item for item in leader]
-    sets = [[k for k in range(people) if leader[k] == fromkey] for fromkey in dict.fromkeys(leader)]
+    sets = [[k for k in range(people) if leader[k] == first] for first in dict.fromkeys(leader)]
     return [set_ for set_ in sets if len(set_) > 1]
 
 

@@ -115,12 +115,12 @@ class ChildProcess:
                 raise self._failure(f"answers with more than {LONGEST_LINE} bytes")
         line, _, self._buffer = self._buffer.partition(b"\n")
         try:
-            loads = json.loads(line)
+            document = json.loads(line)
         except (ValueError, RecursionError):
             raise self._failure("answers with a line that is not JSON") from None
-        if not isinstance(loads, dict):
+        if not isinstance(document, dict):
             raise self._failure("answers with JSON that is not an object")
-        return loads
+        return document
 
     def _failure(self, what: str) -> InputError:
         """Close the process and return the exception that says why."""

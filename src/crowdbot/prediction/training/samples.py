@@ -198,11 +198,10 @@ class Samples:
             watched: validation samples: a fifth of the limits.
         """
         parts = []
-        for fromkey in dict.fromkeys(sets):
-            own = self.select(np.isin(self.source, [place for place, other in enumerate(sets) if other == fromkey]))
-            parts.append(
-                own if fromkey.limit is None else own.limit(max(1, fromkey.limit // (WATCHED if watched else 1)))
-            )
+        for data_set in dict.fromkeys(sets):
+            own = self.select(np.isin(self.source, [place for place, other in enumerate(sets) if other == data_set]))
+            limit = data_set.limit
+            parts.append(own if limit is None else own.limit(max(1, limit // (WATCHED if watched else 1))))
         source = np.concatenate([part.source for part in parts])
         return dataclasses.replace(Samples.concatenate(parts), source=source, names=self.names)
 

@@ -122,12 +122,12 @@ def have_same_kinds(ours: Sequence[FaultSpec], theirs: Sequence[FaultSpec]) -> b
     """Return whether faults are equal except for their numbers."""
     if len(ours) != len(theirs):
         return False
-    for our, two in zip(ours, theirs, strict=True):
-        kind = type(our.fault)
+    for own, other in zip(ours, theirs, strict=True):
+        kind = type(own.fault)
         free = kind.number_names()
         words = [field.name for field in dataclasses.fields(kind) if field.name not in free]
-        if our.name != two.name or kind is not type(two.fault):
+        if own.name != other.name or kind is not type(other.fault):
             return False
-        if any(getattr(our.fault, word) != getattr(two.fault, word) for word in words):
+        if any(getattr(own.fault, word) != getattr(other.fault, word) for word in words):
             return False
     return True

@@ -154,14 +154,14 @@ def _check_degrees(text: str, whole: shapely.Geometry, name: str) -> None:
 
 def _reference_system(text: str) -> str:
     """Return the name of the reference system in a GeoJSON text (a member of the format of 2008), empty without one."""
-    loads: Any
+    document: Any
     try:
-        loads = json.loads(text)
+        document = json.loads(text)
     except (ValueError, RecursionError):  # shapely reads some texts that Python does not
         return ""
     for key in ("crs", "properties", "name"):
-        loads = loads.get(key) if isinstance(loads, dict) else None
-    return loads if isinstance(loads, str) else ""
+        document = document.get(key) if isinstance(document, dict) else None
+    return document if isinstance(document, str) else ""
 
 
 def _first(error: Exception) -> str:
