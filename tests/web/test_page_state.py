@@ -9,7 +9,7 @@ from crowdbot.core import InputError
 from crowdbot.recording import record
 from crowdbot.trials import load_trial
 from crowdbot.web.simulator import FIRST
-from crowdbot.web.simulator.first_trial import Link, read_link
+from crowdbot.web.simulator.first_trial import RunAddress, read_link
 
 TAB = "#tab=jobs"
 STATUS = "crowdbot.tab('simulator').status"
@@ -142,7 +142,7 @@ def test_a_server_that_was_started_with_a_trial_shows_it(tmp_path):
 
 def test_addresses_are_read():
     assert read_link({"tab": "jobs", "seed": "3"}) is None
-    assert read_link({"episode": "a.mcap", "time": "2", "seed": "x"}) == Link("a.mcap", episode=True, time=2.0)
+    assert read_link({"episode": "a.mcap", "time": "2", "seed": "x"}) == RunAddress("a.mcap", episode=True, time=2.0)
     assert read_link({"trial": "a", "seed": "123456789012345678"}).seed == 123456789012345678
 
 

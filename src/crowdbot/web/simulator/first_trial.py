@@ -19,7 +19,7 @@ FIRST: tuple[str, dict[str, str], int] = (
 """Trial, values and seed that a new session shows: a robot among walking people."""
 
 
-class Link(NamedTuple):
+class RunAddress(NamedTuple):
     """What the address of a page names.
 
     Fields:
@@ -41,14 +41,14 @@ class Link(NamedTuple):
     paused: bool = False
 
 
-def read_link(address: Mapping[str, str]) -> Link | None:
+def read_link(address: Mapping[str, str]) -> RunAddress | None:
     """Return the trial or episode that the values of an address name; None if they name none.
 
     Raises:
         InputError: a value is not one that the page writes.
 
     >>> read_link({"tab": "jobs", "trial": "frontal", "seed": "3", "time": "2.5"})
-    Link(name='frontal', values={}, seed=3, episode=False, variant=1, time=2.5, paused=False)
+    RunAddress(name='frontal', values={}, seed=3, episode=False, variant=1, time=2.5, paused=False)
     """
     episode = "episode" in address
     name = address.get("episode" if episode else "trial", "")
@@ -57,7 +57,7 @@ def read_link(address: Mapping[str, str]) -> Link | None:
     paused = "paused" in address
     time = _link_value(address, "time", float, r"\d{1,9}(\.\d{1,9})?", "seconds from 0 on")
     if episode:
-        return Link(name, episode=True, time=time, paused=paused)
+        return RunAddress(name, episode=True, time=time, paused=paused)
     seed = _link_value(address, "seed", int, r"-?\d{1,18}", "a whole number")
     variant = _link_value(address, "variant", int, r"\d{1,9}", "a whole number from 1 on")
     text = address.get("values", "{}")
@@ -67,7 +67,7 @@ def read_link(address: Mapping[str, str]) -> Link | None:
         values = None
     if not isinstance(values, dict) or not all(isinstance(value, str) for value in values.values()):
         raise InputError(f"the address of the page has values={text!r:.80}: expected a JSON object of texts")
-    return Link(name, values, seed, False, 1 if variant is None else variant, time, paused)
+    return RunAddress(name, values, seed, False, 1 if variant is None else variant, time, paused)
 
 
 def _link_value(

@@ -43,7 +43,7 @@ from crowdbot.world import worlds_of
 
 from .beginning_player import BeginningPlayer
 from .camera_feed import CameraFeed
-from .first_trial import FIRST, Link, read_link
+from .first_trial import FIRST, RunAddress, read_link
 from .inspection import inspect_agent, people_rows
 from .live_run import LiveRun
 from .live_values import LIVE_VALUES
@@ -313,8 +313,8 @@ class SimulatorDesk(Desk):
             link = read_link(address)
             own = bool(self.first and self.first.endswith(".mcap"))
             if self.first is not None and (link is None or link.name != self.first):  # with --open
-                link = Link(self.first, episode=own, paused=own)
-            link = link or Link(*FIRST)
+                link = RunAddress(self.first, episode=own, paused=own)
+            link = link or RunAddress(*FIRST)
             if self._player is not None:
                 return
             if link.episode:
