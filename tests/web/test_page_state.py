@@ -44,6 +44,7 @@ def test_a_tab_that_is_opened_late_shows_what_happened_since_the_connection(page
     page.get_by_role("region", name="Recording").get_by_text("bottleneck").first.wait_for()
     show(page, "Experiments")
     page.get_by_role("heading", name="participant 11").wait_for()
+    assert page.evaluate(f"[{STATUS}.trial, {STATUS}.seed, {STATUS}.state]") == ["frontal", 7, "paused"]
 
 
 @pytest.mark.live
