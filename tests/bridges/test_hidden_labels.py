@@ -128,10 +128,10 @@ def test_with_the_truth_everything_of_its_robots_and_the_scene_is_offered(everyt
     assert {transform.child_frame_id for transform in sent(True, everything)["/tf"].transforms} >= {"other/base_link"}
 
 
-def test_odometry_without_a_sensor_of_it_is_the_truth():
+def test_a_robot_without_a_sensor_of_odometry_has_exact_odometry():
     trial = parse_trial(TRIAL)
-    assert "/robot/odom" not in sent(False, trial)
-    assert "/robot/odom" in sent(True, trial)
+    assert "/robot/odom" in sent(False, trial)
+    assert "/robot/ground_truth/odom" not in sent(False, trial)
 
 
 def test_no_message_changes_with_the_numbers_of_the_people():

@@ -44,7 +44,6 @@ def is_latched(topic: str) -> bool:
 def messages(path: Path, begin: float = 0.0) -> list[tuple[str, int, bytes]]:
     with path.open("rb") as stream:
         rows = [(h.topic.topic, h.stamp, h.data) for h in McapReader(stream).messages()]
-    rows.sort(key=lambda row: row[1])  # readings have chunks of their own, which begin and end at other times
     latched = [row for row in rows if is_latched(row[0])]
     assert rows[0][1] in {row[1] for row in latched}
     return [row for row in rows if row[1] >= begin * 1e9 and not is_latched(row[0])]

@@ -16,7 +16,7 @@ from rosbags.highlevel import AnyReader
 
 from crowdbot import sensors
 from crowdbot.core import EpisodeError, SpatialPose
-from crowdbot.data import McapOpcode, McapReader, mcap_reader
+from crowdbot.data import McapOpcode, McapReader
 from crowdbot.messages import (
     CODECS,
     Codec,
@@ -269,24 +269,6 @@ def test_a_file_that_changes_after_it_was_opened_is_no_other_reading(
     run(parse_trial(TRIAL.replace('seed="4"', 'seed="5"')), out=path)
     with pytest.raises(EpisodeError, match="it has changed since it was opened"):
         read.readings["robot/depth"][2]
-
-
-def test_chunks_of_readings_are_left_out(recorded: tuple[Path, Episode], monkeypatch: pytest.MonkeyPatch) -> None:
-    path, episode = recorded
-    with path.open("rb") as stream:
-        chunks: dict[int, set[str]] = {}
-        for message in McapReader(stream).messages():
-            chunks.setdefault(message.place.record.start, set()).add(message.topic.topic)
-    apart = [topics for topics in chunks.values() if "/robot/depth/image" in topics]
-    assert apart
-    assert all(topic.count("/") >= 2 and "/people" not in topics for topics in apart for topic in topics)
-    opened, decompress = list[bytes](), mcap_reader._decompress
-    monkeypatch.setattr(mcap_reader, "_decompress", lambda body: opened.append(body) or decompress(body))
-    read = read_episode(path)
-    assert len(opened) == len(chunks) - len(apart)
-    mcap_reader._content.cache_clear()
-    same(read.readings["robot/people"][7], episode.readings["robot/people"][7], "people")
-    assert len(opened) == len(chunks) - len(apart) + 1
 
 
 def test_a_part_of_an_index_is_completed_by_repair(recorded: tuple[Path, Episode], tmp_path: Path) -> None:

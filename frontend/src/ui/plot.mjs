@@ -98,7 +98,7 @@ export function makePlot(element, { title, x, series, height = HEIGHT, points = 
     mark(value) {
       if (value === marked) return;
       marked = value;
-      plot.redraw(false, false);
+      plot.redraw(false, true); // with false, a plot that is not drawn yet would never place its axes
     },
     destroy() {
       document.removeEventListener("theme", onTheme);

@@ -526,8 +526,8 @@ def _robot_outputs(robot: RobotSpec, every: float) -> list[OutputTopic]:
     ]
     if "odom" not in sensors:
         measured = any(mount.sensor.encoders for mount in robot.sensors)
-        about = "odometry" if measured else "true odometry, without a sensor of it"
-        rows.append(OutputTopic(f"/{name}/odom", odometry, frames.odom, every, STATE, name, about, not measured))
+        about = "odometry" if measured else "exact odometry, without a sensor of it"
+        rows.append(OutputTopic(f"/{name}/odom", odometry, frames.odom, every, STATE, name, about))
     if "joint_states" not in sensors and robot.body.model.movable:
         rows.append(
             OutputTopic(f"/{name}/joint_states", "sensor_msgs/msg/JointState", "", every, STATE, name, "joints")

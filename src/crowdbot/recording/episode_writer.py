@@ -135,11 +135,11 @@ class Recorder:
         now = frame.nanoseconds
         self._note_added(frame)
         for message in self.steps.messages(frame):
-            self._put(message.topic, message.kind, message.cdr, now, frame)
+            self._put(message.topic, message.kind, message.cdr, now)
         if frame.due:
             self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
             text = self.messages.text(self.last[1])
-            self._put(DIGEST, text.__msgtype__, self.messages.encode_message(text), now, frame)
+            self._put(DIGEST, text.__msgtype__, self.messages.encode_message(text), now)
         assert self.tape is not None
         if (keyframe := self.keyframes.take(frame)) is not None:
             self.tape.attachment(f"keyframe/{frame.tick}", keyframe, MEDIA, now)
@@ -188,13 +188,12 @@ class Recorder:
         assert self.tape is not None
         self.tape.metadata(ADDED_ROBOTS, {"added_robots": as_json(list(self._added.values()))})
 
-    def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int, frame: StepRecord) -> None:
+    def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
         assert self.tape is not None
         if topic not in self.channels:
             schema = self.tape.schema(kind, self.messages.definition(kind))
             quality = LATCHED if topic.endswith(LATCHED_TOPICS) else ""
-            sensors = tuple(f"/{robot.name}/{mount.name}/" for robot, mount, _ in frame.readings)
-            self.channels[topic] = self.tape.channel(topic, schema, quality, f"{topic}/".startswith(sensors))
+            self.channels[topic] = self.tape.channel(topic, schema, quality)
         try:
             self.tape.message(self.channels[topic], nanoseconds, data)
         except OSError as error:

@@ -1,9 +1,9 @@
 """McapWriter: writes MCAP files that are valid after every write, even if the process is killed.
 
-Messages are collected in two chunks: those of large channels have their own, so that readers can leave it out. Each
-write replaces the file footer by the chunks, their indexes and a new footer without a summary. The file can therefore
-always be opened; only the current chunks can be lost. A finished file has the summary
-and the indexes for fast access.
+Messages are collected in a chunk. Each write replaces the file footer by the chunk, its index and a new footer without
+a summary. The file can therefore always be opened; only the current chunk can be lost. A finished file has the summary
+and the indexes for fast access. All messages stand in the order of their times, which rosbags needs in a file without
+a summary.
 """
 
 from __future__ import annotations
@@ -93,8 +93,7 @@ class McapWriter:
         self.stream: BinaryIO | None = None
         self.end = 0
         self._before = MCAP_MAGIC + _bytes(Header(profile, library))
-        self._chunks = _Chunk(), _Chunk()
-        self._large: set[int] = set()
+        self._chunk = _Chunk()
         self._schemas: dict[str, int] = {}
         self._channels = 0
 
@@ -105,18 +104,9 @@ class McapWriter:
             self._before += _bytes(Schema(self._schemas[name], text.encode(), "ros2msg", name))
         return self._schemas[name]
 
-    def channel(self, topic: str, schema: int, quality: str = "", large: bool = False) -> int:
-        """Return the id of a new channel.
-
-        Args:
-            topic: its topic.
-            schema: id of its message type.
-            quality: quality of service in ROS 2 (YAML, as in rosbag2).
-            large: whether its messages are in the chunks of large ones; other messages of their times come first.
-        """
+    def channel(self, topic: str, schema: int, quality: str = "") -> int:
+        """Return the id of a new channel; ``quality`` is the quality of service in ROS 2 (YAML, as in rosbag2)."""
         self._channels += 1
-        if large:
-            self._large.add(self._channels)
         self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": quality}, schema))
         return self._channels
 
@@ -130,19 +120,19 @@ class McapWriter:
 
     def message(self, channel: int, nanoseconds: int, data: bytes) -> None:
         """Add a message."""
-        chunk = self._chunks[channel in self._large]
+        chunk = self._chunk
         chunk.index.setdefault(channel, []).append((nanoseconds, len(chunk.data)))
         chunk.data += struct.pack("<BQHIQQ", McapOpcode.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
         chunk.data += data
 
     @property
     def large(self) -> bool:
-        """Whether a chunk is large enough to be written early."""
-        return any(len(chunk.data) > LARGE for chunk in self._chunks)
+        """Whether the current chunk is large enough to be written early."""
+        return len(self._chunk.data) > LARGE
 
     def flush(self) -> None:
         """Write all pending data."""
-        data = self._before + b"".join(chunk.take() for chunk in self._chunks)
+        data = self._before + self._chunk.take()
         self._before = b""
         if data:
             self._put(data + SHORT_END)
