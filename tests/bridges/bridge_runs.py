@@ -2,10 +2,22 @@
 
 import contextlib
 import threading
+import time
+
+import pytest
 
 from crowdbot.bridges import BridgeClock, BridgeRun
 from crowdbot.bridges.rosbridge.server import RosbridgeServer
 from crowdbot.trials import parse_trial
+
+
+def wait(reached, seconds=60.0, look=0.01):
+    """Wait until something is reached, with some real time [s] between two looks; the test fails after a limit [s]."""
+    end = time.monotonic() + seconds
+    while not reached():
+        if time.monotonic() > end:
+            pytest.fail("it is not reached in time")
+        time.sleep(look)
 
 
 def endless_trial(seconds):

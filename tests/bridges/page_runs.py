@@ -7,7 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from partner_runs import ENDLESS, OWN, Meeting, number_of_orders, wait
+from bridge_runs import wait
+from partner_runs import ENDLESS, OWN, Meeting, number_of_orders
 
 from crowdbot.recording import read_episode, replay
 

@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 
 import pytest
-from bridge_runs import MemoryTransport, Running, endless_trial
+from bridge_runs import MemoryTransport, Running, endless_trial, wait
 from ros1_master import PYTHON, RosMaster
 
 from crowdbot.benchmark.speed import bridge_viewer
@@ -42,15 +42,6 @@ def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
-
-
-def wait(reached, seconds=60.0, look=0.01):
-    """Wait until something is reached, with some real time [s] between two looks."""
-    end = time.monotonic() + seconds
-    while not reached():
-        if time.monotonic() > end:
-            pytest.fail("it is not reached in time")
-        time.sleep(look)
 
 
 class OtherServer(contextlib.AbstractContextManager):

@@ -6,8 +6,9 @@ import os
 import sys
 
 import pytest
+from bridge_runs import wait
 from page_runs import HOW_TO, PAGES, begin, count_commands, drive, end, follow_page, simulation_words
-from partner_runs import number_of_orders, wait
+from partner_runs import number_of_orders
 from test_join import start_robot
 from test_naoqi import FakeRobot
 

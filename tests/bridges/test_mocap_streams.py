@@ -5,11 +5,11 @@ from __future__ import annotations
 import random
 import socket
 import time
-from collections.abc import Callable
 
 import motion_senders as senders
 import numpy as np
 import pytest
+from bridge_runs import wait
 from hypothesis import given
 from hypothesis import strategies as st
 from motion_senders import Motive, Sender
@@ -18,14 +18,6 @@ from crowdbot.bridges import open_stream
 from crowdbot.bridges.motion_capture import ClockOffset, NatNetStream, XsensStream
 from crowdbot.bridges.motion_capture.natnet import read_server
 from crowdbot.core import InputError
-
-
-def wait_for(reached: Callable[[], object]) -> None:
-    end = time.monotonic() + 10.0
-    while not reached():
-        if time.monotonic() > end:
-            pytest.fail("it is not reached in time")
-        time.sleep(0.005)
 
 
 def fed(*datagrams: bytes) -> XsensStream:
@@ -155,7 +147,7 @@ def test_samples_come_over_the_network_with_their_age() -> None:
     with open_stream("xsens:0") as stream:
         assert isinstance(stream, XsensStream)
         with Sender(stream.port) as sender:
-            wait_for(lambda: sender.sent > 30 and stream.subjects())
+            wait(lambda: sender.sent > 30 and stream.subjects())
             start, ages, late = time.monotonic(), [], []
             for k in range(20):
                 time.sleep(max(0.0, start + 0.02 * k - time.monotonic()))
@@ -217,7 +209,7 @@ def test_the_clock_offset_starts_anew_after_a_jump() -> None:
 @pytest.mark.parametrize("local", [False, True], ids=["global", "local"])
 def test_motive_streams_rigid_bodies_and_skeletons(version: tuple[int, int], local: bool) -> None:
     with Motive(version, local) as motive, open_stream(f"natnet:127.0.0.1:{motive.port}") as stream:
-        wait_for(lambda: len(stream.subjects()) == 2)
+        wait(lambda: len(stream.subjects()) == 2)
         ((_, person),) = stream.read("Anna", 0.0, 0.05)
         ((_, cart),) = stream.read("Cart", 0.0, 0.05)
     hand = person.position[person.skeleton.roles["hand_l"]] - person.position[0]
@@ -231,9 +223,9 @@ def test_motive_streams_rigid_bodies_and_skeletons(version: tuple[int, int], loc
 def test_motive_by_multicast_and_with_z_up() -> None:
     motive = Motive(multicast="239.255.42.99", up_axis=2)
     with motive, open_stream(f"natnet:127.0.0.1:{motive.port}") as stream:
-        wait_for(lambda: "Cart" in stream.subjects())
+        wait(lambda: "Cart" in stream.subjects())
         ((_, cart),) = stream.read("Cart", 0.0, 0.05)
-        wait_for(lambda: motive.alive > 0)
+        wait(lambda: motive.alive > 0)
     np.testing.assert_allclose(cart.position[0], [1.0, 0.3, 0.5 * cart.time], atol=1e-5)
 
 

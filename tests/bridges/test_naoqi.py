@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import qi
-from bridge_runs import MemoryTransport, Running
+from bridge_runs import MemoryTransport, Running, wait
 from partner_runs import OdometryMemory, recording_of, time_until_still
 
 from crowdbot.bridges import BridgeClock, open_transport, run_bridge
@@ -84,14 +84,6 @@ class FakeRobot:
 
     def __exit__(self, *error):
         self.kill()
-
-
-def wait(reached, seconds=60.0):
-    end = time.monotonic() + seconds
-    while not reached():
-        if time.monotonic() > end:
-            pytest.fail("it is not reached in time")
-        time.sleep(0.01)
 
 
 @pytest.mark.live

@@ -19,7 +19,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from bridge_runs import MemoryTransport, Running
+from bridge_runs import MemoryTransport, Running, wait
 from ros1_master import RosMaster
 
 from crowdbot.bridges import BridgeClock, RobotInterface, open_transport, run_bridge
@@ -37,14 +37,6 @@ TRIAL = load_trial("frontal", duration=4.0)
 def master(ros1, tmp_path_factory):
     with RosMaster(tmp_path_factory.mktemp("ros")) as found:
         yield found
-
-
-def wait(reached, seconds=20.0):
-    end = time.monotonic() + seconds
-    while not reached():
-        if time.monotonic() > end:
-            pytest.fail("it is not reached in time")
-        time.sleep(0.01)
 
 
 def ended(process, seconds=60):

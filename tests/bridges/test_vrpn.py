@@ -9,11 +9,10 @@ import socket
 import struct
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 
 import numpy as np
 import pytest
+from bridge_runs import wait
 from hypothesis import given
 from hypothesis import strategies as st
 from vrpn_server import VrpnServer, vrpn_message, vrpn_pose
@@ -33,14 +32,6 @@ TEXT = """<trial name="led" duration="{}"><stage/><crowd type="orca"/>
 </trial>"""
 
 
-def wait_for(reached: Callable[[], object], seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not reached():
-        if time.monotonic() > end:
-            pytest.fail("it is not reached in time")
-        time.sleep(0.005)
-
-
 def described(*parts: bytes) -> bytes:
     """Return the bytes of a server whose sender 1 is the cart and whose type 3 is a pose."""
     names = [(1, -1, b"Cart\0"), (3, -2, b"vrpn_Tracker Pos_Quat\0")]
@@ -58,7 +49,7 @@ def fed(*chunks: bytes) -> VrpnStream:
 @pytest.mark.live
 def test_the_poses_of_a_tracker_come_with_their_time() -> None:
     with VrpnServer() as server, open_stream(f"vrpn:127.0.0.1:{server.port}") as stream:
-        wait_for(lambda: stream.statistics("Cart").samples > 5)
+        wait(lambda: stream.statistics("Cart").samples > 5)
         ((_, cart),) = stream.read("Cart", 0.0, 0.05)
         assert stream.subjects() == ("Cart",)
         assert stream.latency() is not None
@@ -93,11 +84,11 @@ def test_the_sender_is_understood_by_the_library_of_vrpn() -> None:
 @pytest.mark.live
 def test_a_lost_connection_is_made_again() -> None:
     with VrpnServer() as server, open_stream(f"vrpn:127.0.0.1:{server.port}") as stream:
-        wait_for(lambda: stream.statistics("Cart").samples > 5)
+        wait(lambda: stream.statistics("Cart").samples > 5)
         server.hang_up.set()
-        wait_for(lambda: server.met == 2)
+        wait(lambda: server.met == 2)
         before = stream.statistics("Cart").samples
-        wait_for(lambda: stream.statistics("Cart").samples > before + 5)
+        wait(lambda: stream.statistics("Cart").samples > before + 5)
         assert "closed the connection" in stream.statistics().reason
 
 
@@ -107,11 +98,11 @@ def test_a_killed_server_and_another_one_at_its_place() -> None:
         port = server.port
         stream = open_stream(f"vrpn:127.0.0.1:{port}")
         stream.__enter__()
-        wait_for(lambda: stream.statistics("Cart").samples > 5)
-    wait_for(lambda: "cannot reach the VRPN server" in stream.statistics().reason)
+        wait(lambda: stream.statistics("Cart").samples > 5)
+    wait(lambda: "cannot reach the VRPN server" in stream.statistics().reason)
     with VrpnServer(port=port):
         before = stream.statistics("Cart").samples
-        wait_for(lambda: stream.statistics("Cart").samples not in (0, before))
+        wait(lambda: stream.statistics("Cart").samples not in (0, before))
         assert "cannot reach the VRPN server" in stream.statistics().reason  # the latest interruption is still told
         stream.__exit__(None, None, None)
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import crowdbot
-from crowdbot.core import kernels
+from crowdbot.core import kernels, prange
+from crowdbot.typing import Floats
 
 LENGTH, TABLE = 1.0, np.zeros(2)
 
@@ -23,6 +24,24 @@ def inner(x):
 @kernels.kernel
 def outer(x):
     return inner(x) + TABLE[1]
+
+
+@kernels.kernel
+def add(values: Floats, index: int, amount: float) -> None:
+    values[index] += amount
+
+
+@kernels.kernel(parallel=True)
+def add_everywhere(values: Floats) -> None:
+    for k in prange(len(values)):
+        add(values, k, 1.0)
+
+
+@kernels.kernel
+def add_at_three(values: Floats, index: int) -> None:
+    add(values, 0, 1.0)
+    add(values, 1, 1.0)
+    add(values, index, 1.0)
 
 
 PROGRAM = """
@@ -59,6 +78,15 @@ def _run(folder, program=PROGRAM, *words, path=None):
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.split() if program == PROGRAM else done.stderr
+
+
+def test_constants_and_indices_of_parallel_loops_compile_nothing_anew():
+    values = np.zeros(3)
+    add_at_three(values, 2)
+    assert values.tolist() == [1.0, 1.0, 1.0]
+    add_everywhere(values)
+    assert values.tolist() == [2.0, 2.0, 2.0]
+    assert len(add.dispatcher.signatures) == 1
 
 
 @pytest.mark.program

@@ -82,9 +82,29 @@ class Kernel:
         settings.CACHE_DIR, caches._locator_classes = str(cache_folder()), [_PackageLocator, *locators]
         try:
             options = {"error_model": "numpy", "fastmath": False, "parallel": self._parallel}
-            return numba.njit(cache=True, forceinline=self._inline, **options)(self.py_func)
+            dispatcher = numba.njit(cache=True, forceinline=self._inline, **options)(self.py_func)
         finally:
             settings.CACHE_DIR, caches._locator_classes = before, locators
+        if not settings.DISABLE_JIT:
+            dispatcher.get_call_template = functools.partial(
+                self._call_template, numba.types, dispatcher.get_call_template
+            )
+        return dispatcher
+
+    def _call_template(
+        self, types: Any, resolve: Callable[..., Any], args: tuple[Any, ...], kws: dict[str, Any]
+    ) -> Any:
+        """Return what numba compiles for a call in another kernel.
+
+        By itself it compiles a function anew for each constant number in a call, and for the index of a parallel loop,
+        which is unsigned.
+        """
+        hints, names = self.py_func.__annotations__, self.py_func.__code__.co_varnames
+        plain = [types.unliteral(argument) for argument in args]
+        for k, argument in enumerate(plain):
+            if argument == types.uint64 and hints.get(names[k]) in ("int", int):
+                plain[k] = types.int64
+        return resolve(tuple(plain), {name: types.unliteral(argument) for name, argument in kws.items()})
 
     @functools.cached_property
     def starts_threads(self) -> bool:
