@@ -112,9 +112,9 @@ $(VENV)/installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) -e .
 	touch $@
 
-# JuPedSim comes without its viewer, 1.3 GB of Qt and VTK.
+# JuPedSim comes without its viewer, 1.3 GB of Qt and VTK. Tests import a small part of the modules: no bytecode of the others.
 $(VENV)/installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(PIP) -e ".[dev]"
+	$(PIP) --no-compile -e ".[dev]"
 	$(PIP) --no-deps jupedsim
 	touch $(VENV)/installed $@
 
