@@ -35,7 +35,7 @@ from crowdbot.metrics import (
     fde,
     kde_nll,
     neighbor_mask,
-    swept_collision_shares,
+    swept_collisions,
 )
 from crowdbot.prediction import (
     AnchorNet,
@@ -102,9 +102,8 @@ def scores(forecast: Forecast, past: Windows, future: Windows, deep: bool) -> di
         hit = np.einsum("wk,wka->wa", forecast.weight, collision_mask(forecast, future))
         result["collisions"] = hit[together]
         for limit in (0.2, 0.4):
-            own, true = swept_collision_shares(forecast, past, future, limit)
-            result[f"swept {limit}"] = np.full(int(together.sum()), own)
-            result[f"truth {limit}"] = np.full(int(together.sum()), true)
+            own, true = swept_collisions(forecast, past, future, limit)
+            result[f"swept {limit}"], result[f"truth {limit}"] = own[together], true[together]
     if deep and forecast.samples > 1:
         result["energy"], result["NLL"] = energy_score(forecast, future)[who], kde_nll(forecast, future)[who]
     return result

@@ -11,17 +11,16 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import numpy as np
-
 from crowdbot.data import load
-from crowdbot.metrics import swept_collision_shares
+from crowdbot.evaluation import score_predictor
+from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, ConstantVelocity, Predictor, Simulated
 
 FILES = {
     "eth": ("biwi_eth",), "hotel": ("biwi_hotel",), "univ": ("students001", "students003"),
     "zara1": ("crowds_zara01",), "zara2": ("crowds_zara02",),
 }  # fmt: skip
-LIMITS = (0.2, 0.4)
+LIMITS = {0.2: "swept_collisions", 0.4: "swept_contacts"}
 
 
 def asked(fold: str) -> dict[str, tuple[Predictor, int]]:
@@ -49,14 +48,14 @@ def main() -> None:
     for fold, names in FILES.items():
         cut = [load(options.data / "all_data" / f"{name}.txt", fps=25).windows() for name in names]
         cut = [(past[:: options.every], future[:: options.every]) for past, future in cut]
-        people = np.array([int((f.scored & (f.scored.sum(axis=1) > 1)[:, None]).sum()) for _, f in cut])
-        shares: dict[float, list[float]] = {limit: [] for limit in LIMITS}
-        for predictor, samples in asked(fold).values():
-            forecasts = [predictor.predict(past, 12, samples) for past, _ in cut]
-            for limit in LIMITS:
-                both = [swept_collision_shares(f, *pair, limit) for f, pair in zip(forecasts, cut, strict=True)]
-                own, true = (np.array(both).T @ people / people.sum()).tolist()
-                shares[limit] = (shares[limit] or [true]) + [own]
+        scores = [
+            Score.total([score_predictor(predictor, past, future, samples) for past, future in cut])
+            for predictor, samples in asked(fold).values()
+        ]
+        shares = {
+            limit: [getattr(scores[0], f"{name}_truth"), *(getattr(item, name) for item in scores)]
+            for limit, name in LIMITS.items()
+        }
         for limit, row in shares.items():
             print(f"| {fold}; {limit} | " + " | ".join(f"{100 * value:.1f} %" for value in row) + " |", flush=True)
 

@@ -9,8 +9,8 @@ import pytest
 from guesses import case
 
 from crowdbot.core import InputError, stream
-from crowdbot.data import Forecast, Windows
-from crowdbot.metrics import Intervals, Score, collision_share, kde_nll, score
+from crowdbot.data import Forecast, Windows, slice_rows
+from crowdbot.metrics import Intervals, Score, collision_share, kde_nll, score, swept_collisions
 
 
 def scored(
@@ -51,7 +51,9 @@ def test_a_total_weighs_by_persons() -> None:
 def test_a_score_becomes_json_and_comes_back() -> None:
     one = dataclasses.replace(
         scored([0.5, 2.5]), collisions=0.25, together=2, seconds_per_window=0.01, true_collisions=0.2, accompanied=5,
-        nll=1.5, dense=1, intervals=Intervals(*[(0.0, 1.0)] * 7),
+        nll=1.5, dense=1, swept_collisions=0.25, swept_contacts=0.5, swept_collisions_truth=0.0,
+        swept_contacts_truth=0.5,
+        intervals=Intervals(*[(0.0, 1.0)] * 9),
     )  # fmt: skip
     plain = one.as_dict()
     assert "people" not in plain
@@ -64,11 +66,18 @@ def test_a_score_becomes_json_and_comes_back() -> None:
 
 def test_every_mean_is_that_of_its_metric() -> None:
     forecast, future = case(1, K=8)
-    one = score(forecast, future)
+    past = slice_rows(future, 0, 1)
+    one = score(forecast, future, past=past)
     assert one.collisions == pytest.approx(collision_share(forecast, future))
     assert one.true_collisions == pytest.approx(collision_share(forecast, future, neighbors="true"))
+    for limit, name in ((0.2, "swept_collisions"), (None, "swept_contacts")):
+        share, true = (np.nanmean(each) for each in swept_collisions(forecast, past, future, limit))
+        assert (getattr(one, name), getattr(one, f"{name}_truth")) == pytest.approx((share, true))
+    assert f"at 0.2 m {100 * one.swept_collisions:.1f} % ({100 * one.swept_collisions_truth:.1f} %)" in str(one)
+    assert one.cells()[one.columns.index("radii (truth)")] in str(one)
     nll = kde_nll(forecast, future)[future.scored]
-    assert (one.nll, one.dense) == (pytest.approx(nll.mean()), len(nll))
+    assert one.nll == pytest.approx(nll.mean())
+    assert one.dense == len(nll)
     assert 0.0 < one.energy < one.intervals.energy[1]
     for name, (low, high) in dataclasses.asdict(one.intervals).items():
         assert low <= getattr(one, name) <= high
@@ -78,7 +87,9 @@ def halves(seed: int) -> tuple[Score, Score, Score]:
     """Scores of two recordings of other people, and the score of both as one recording."""
     forecast, future = case(seed, W=8, K=5)
     future = dataclasses.replace(future, id=future.id + 10 * (np.arange(8)[:, None] >= 4))
-    return score(forecast[:4], future[:4]), score(forecast[4:], future[4:]), score(forecast, future)
+    past = slice_rows(future, 0, 1)
+    one, other, whole = (score(forecast[k], future[k], past=past[k]) for k in (slice(4), slice(4, 8), slice(8)))
+    return one, other, whole
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -93,6 +104,7 @@ def test_a_total_is_the_score_of_all_people_together_with_their_intervals(seed: 
     assert (total.accompanied, total.dense, total.there) == (whole.accompanied, whole.dense, whole.there)
     three = Score.total([total, one])
     assert three.people is not None
+    assert one.people is not None
     assert len(three.people.id) == len(total.people.id) + len(one.people.id)
 
 

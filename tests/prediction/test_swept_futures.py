@@ -8,9 +8,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from crowdbot.core import stream
+from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Trajectories, Windows
-from crowdbot.metrics import collision_share, swept_collision_shares
+from crowdbot.evaluation import score_predictor
+from crowdbot.metrics import collision_share, swept_collisions
 from crowdbot.prediction import AnchorNet, ConstantVelocity
 from crowdbot.prediction.joint_kernels import separate_paths
 
@@ -24,6 +25,11 @@ def gap(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.hypot(*away).min())
 
 
+def shares(forecast: Forecast, past: Windows, future: Windows, limit: float = 0.2) -> tuple[float, ...]:
+    """Return the mean share of swept collisions of the forecast, and of the truth."""
+    return tuple(float(np.nanmean(each)) for each in swept_collisions(forecast, past, future, limit))
+
+
 def test_people_who_pass_through_each_other_between_rows_collide() -> None:
     track = np.array([[[0.0, 0.0], [1.0, 0.05]], [[1.0, 0.0], [0.0, 0.05]]])
     tracks = Trajectories(
@@ -32,10 +38,32 @@ def test_people_who_pass_through_each_other_between_rows_collide() -> None:
     past, future = tracks.windows(observe=1, predict=1)
     forecast = ConstantVelocity().predict(past, 1)
     swapped = Forecast.of(future.position[:, None], past.present[:, -1], 0.4, "true")
-    assert swept_collision_shares(swapped, past, future) == (1.0, 1.0)
+    assert shares(swapped, past, future) == (1.0, 1.0)
     assert collision_share(swapped, future) == 0.0
-    assert swept_collision_shares(forecast, past, future) == (0.0, 1.0)
-    assert swept_collision_shares(swapped, past, future, 0.04) == (0.0, 0.0)
+    assert shares(forecast, past, future) == (0.0, 1.0)
+    assert shares(swapped, past, future, 0.04) == (0.0, 0.0)
+
+
+def test_bodies_collide_by_their_radii_where_they_are_known() -> None:
+    x = np.tile([0.0, 0.5, 9.0], 2)
+    tracks = Trajectories(np.tile([1, 2, 3], 2), np.repeat([0, 10], 3), x, np.zeros(6), row_rate=2.5)
+    past, future = tracks.windows(observe=1, predict=1)
+    stand = ConstantVelocity().predict(past, 1)
+    assert swept_collisions(stand, past, future, None)[0].tolist() == [[0.0, 0.0, 0.0]]  # 0.2 m each
+    wide = dataclasses.replace(past, radius=np.array([[0.25, 0.3, np.nan]]))
+    assert swept_collisions(stand, wide, future, None)[0].tolist() == [[1.0, 1.0, 0.0]]
+    total = score_predictor(ConstantVelocity(), wide, future)
+    assert (total.swept_collisions, total.swept_contacts, total.swept_contacts_truth) == (0.0, 2.0 / 3.0, 2.0 / 3.0)
+
+
+def test_swept_collisions_need_the_past_of_the_same_people() -> None:
+    here = np.ones((1, 1, 2), dtype=bool)
+    future = Windows(
+        np.zeros((1, 1, 2, 2)), here, here[:, 0], ~here[:, 0], np.array([[1, 2]]), np.array([[1]]), 0.4, "all", "street"
+    )
+    other = dataclasses.replace(future, id=np.array([[1, 3]]))
+    with pytest.raises(InputError, match="past and future of street have different people"):
+        swept_collisions(Forecast.of(np.zeros((1, 1, 1, 2, 2)), here[:, 0], 0.4, "me"), other, future)
 
 
 @pytest.mark.parametrize("limit", [0.25, 0.4, 0.6])
@@ -54,7 +82,7 @@ def test_futures_of_one_draw_collide_less_than_those_of_single_people(
     past, future = recorded("crowds_zara02").windows()
     past, future = past[::40], future[::40]
     found = {
-        contact: swept_collision_shares(AnchorNet("zara2", contact=contact).predict(past, 12, 20), past, future, 0.4)
+        contact: shares(AnchorNet("zara2", contact=contact).predict(past, 12, 20), past, future, 0.4)
         for contact in (0.0, 0.25, 0.4)
     }
     assert found[0.4][0] < 0.3 * found[0.25][0] < 0.3 * found[0.0][0]

@@ -1,7 +1,7 @@
 """Metrics: errors, likelihood and collisions of forecasts, and navigation metrics of robots among people."""
 
 from .agent_states import AgentLog, AgentStates
-from .collisions import collision_mask, collision_share, neighbor_mask, swept_collision_shares
+from .collisions import collision_mask, collision_share, neighbor_mask, swept_collisions
 from .contact_tracker import ContactTracker
 from .contacts import HOLD, ContactEvent, cause_of, contact_events
 from .coverage import ellipse_coverage
@@ -197,7 +197,7 @@ __all__ = [
     "step_wall_clearance",
     "structural_similarity",
     "swept_clearance",
-    "swept_collision_shares",
+    "swept_collisions",
     "swept_distance",
     "time_to_collision",
     "track_latency",

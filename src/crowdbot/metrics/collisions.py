@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core import InputError, did_you_mean
+from crowdbot.core import InputError, did_you_mean, kernel
 from crowdbot.data import Forecast, Windows
 from crowdbot.typing import Bools, Floats
 
 from .displacement import check
-from .proximity import swept_distance
 
 CONTACT = 0.2
 """Two people closer than this [m] collide (TrajNet++)."""
+RADIUS = 0.2
+"""Radius of a person [m] where the windows have none."""
 NEIGHBORS = ("predicted", "true")
 PAIRS_AT_ONCE = 500_000
 """Maximum number of pair distances in memory at once."""
@@ -38,7 +39,7 @@ def collision_mask(
             robots (Col-II). Robots themselves are not scored. People who enter after the last observed step are not in
             the window.
         parts: number of parts into which the straight way between two steps is divided; the points between them are
-            tested too. TrajNet++ has 2; 1: steps only. See also :func:`swept_collision_shares`.
+            tested too. TrajNet++ has 2; 1: steps only. See also :func:`swept_collisions`.
         everyone: predicted neighbors are all people with a forecast, not only those who are scored. TrajNet++ scores
             one person of a scene.
 
@@ -96,41 +97,74 @@ def collision_share(forecast: Forecast, future: Windows, limit: float = CONTACT,
     return float(mean_over_samples(forecast, hit)[together].mean())
 
 
-def swept_collision_shares(
-    forecast: Forecast, past: Windows, future: Windows, limit: float = CONTACT
-) -> tuple[float, float]:
-    """Return the shares of scored people who come closer than ``limit`` [m] to another one, predicted and true.
+def swept_collisions(
+    forecast: Forecast, past: Windows, future: Windows, limit: float | None = CONTACT
+) -> tuple[Floats, Floats]:
+    """Return ``[W, A]`` twice: the share of the samples in which a scored person collides, and 1 if the true one does.
 
     People move straight between rows, from the last observed row on: this finds collisions that
-    :func:`collision_share` overlooks. Both shares are means over the people in windows with at least two scored people,
-    over all steps at which both are present; the first is a weighted mean over the samples. NaN without such people.
+    :func:`collision_mask` overlooks. Two people collide if their centres come closer than ``limit`` [m] while both are
+    present in the ground truth. Other people are the other scored people of the window, in the same sample; the share
+    is weighted by the samples. Both values are NaN for people without another scored person, see
+    :func:`neighbor_mask`.
 
     Args:
         forecast, past, future: forecast, past and future of the same windows.
-        limit: distance between centres [m]: 0.2 m, or the sum of two radii.
+        limit: collision distance [m]; None: the sum of the radii of the two people, :data:`RADIUS` where a radius is
+            unknown.
+
+    Raises:
+        InputError: forecast, past and future do not match.
+
+    >>> here = np.ones((1, 1, 2), dtype=bool)
+    >>> place = np.array([[[[0.0, 0.0], [1.0, 0.05]]]])
+    >>> past, future = (Windows(at, here, here[:, 0], ~here[:, 0], np.array([[7, 8]]), np.array([[10 * k]]), 0.4, "all",
+    ...     "street") for k, at in enumerate((place, place[:, :, ::-1])))  # both go to the place of the other
+    >>> stand = Forecast.of(place[:, None], here[:, 0], 0.4, "me")
+    >>> [share.tolist() for share in swept_collisions(stand, past, future)]
+    [[[0.0, 0.0]], [[1.0, 1.0]]]
     """
     check(forecast, future)
+    if past.id.shape != future.id.shape or np.any(past.id != future.id):
+        raise InputError(f"collisions: past and future of {future.source} have different people")
     together = neighbor_mask(future)
-    found = np.zeros(together.shape), np.zeros(together.shape)
+    share, true = np.full(together.shape, np.nan), np.full(together.shape, np.nan)
+    radius = np.full(together.shape, RADIUS) if past.radius is None else past.radius
+    radius = np.where(np.isnan(radius), RADIUS, radius)
     for window in np.flatnonzero(together.any(axis=1)):
         who = np.flatnonzero(future.scored[window])
-        here = np.concatenate([past.present[window, -1:, who].T, future.present[window][:, who]])
-        start = past.position[window, -1][who]
+        here = np.concatenate([past.present[window, -1:][:, who], future.present[window][:, who]])
         paths = np.concatenate([forecast.position[window][:, :, who], future.position[window][None, :, who]])
-        hit = np.array([_swept_hits(np.concatenate([start[None], path]), here, limit) for path in paths])
-        found[0][window, who] = forecast.weight[window] @ hit[:-1]
-        found[1][window, who] = hit[-1]
-    if not np.any(together):
-        return float("nan"), float("nan")
-    return float(found[0][together].mean()), float(found[1][together].mean())
+        start = np.broadcast_to(past.position[window, -1][who], (len(paths), 1, len(who), 2))
+        size = radius[window, who] if limit is None else np.full(len(who), 0.5 * limit)
+        hit = _swept_hits(np.concatenate([start, paths], axis=1), here, size)
+        share[window, who] = forecast.weight[window] @ hit[:-1]
+        true[window, who] = hit[-1]
+    return share, true
 
 
-def _swept_hits(path: Floats, here: Bools, limit: float) -> Bools:
-    """Return ``[A]``: whether a person of ``path [T, A, 2]`` comes closer than ``limit`` [m] to another one."""
-    away = path[:, :, None] - path[:, None]
-    both = here[:, :, None] & here[:, None] & ~np.eye(path.shape[1], dtype=np.bool_)
-    near = swept_distance(away[:-1], away[1:]) < limit
-    return np.asarray((near & both[:-1] & both[1:]).any(axis=(0, 2)))
+@kernel
+def _swept_hits(path: Floats, here: Bools, radius: Floats) -> Bools:  # pragma: no cover - compiled
+    """Return ``[K, A]``: whether a person of ``path [K, T, A, 2]`` [m] comes closer than the radii to another one."""
+    K, T, A, _ = path.shape
+    hit = np.zeros((K, A), dtype=np.bool_)
+    for k in range(K):
+        for a in range(A):
+            for b in range(a + 1, A):
+                if hit[k, a] and hit[k, b]:
+                    continue
+                limit = radius[a] + radius[b]
+                for t in range(1, T):
+                    if not (here[t - 1, a] and here[t - 1, b] and here[t, a] and here[t, b]):
+                        continue
+                    x, y = path[k, t - 1, a, 0] - path[k, t - 1, b, 0], path[k, t - 1, a, 1] - path[k, t - 1, b, 1]
+                    u, v = path[k, t, a, 0] - path[k, t, b, 0] - x, path[k, t, a, 1] - path[k, t, b, 1] - y
+                    way = u * u + v * v
+                    at = min(max(-(x * u + y * v) / way, 0.0), 1.0) if way > 0.0 else 0.0
+                    if (x + at * u) ** 2 + (y + at * v) ** 2 < limit * limit:
+                        hit[k, a] = hit[k, b] = True
+                        break
+    return hit
 
 
 def neighbor_mask(future: Windows, neighbors: str = "predicted") -> Bools:

@@ -95,6 +95,8 @@ class Intervals:
     miss_rate: Interval = UNKNOWN
     collisions: Interval = UNKNOWN
     true_collisions: Interval = UNKNOWN
+    swept_collisions: Interval = UNKNOWN
+    swept_contacts: Interval = UNKNOWN
     nll: Interval = UNKNOWN
     energy: Interval = UNKNOWN
 
@@ -108,7 +110,7 @@ class PersonValues:
 
     Fields:
         id: ``[M]`` identity in the recording; people of several recordings are concatenated.
-        total, count: ``[M, 7]`` sum and number of the known values, columns as in :class:`Intervals`.
+        total, count: ``[M, 9]`` sum and number of the known values, columns as in :class:`Intervals`.
     """
 
     id: Ints

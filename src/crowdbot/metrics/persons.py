@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.data import Forecast, Windows
 from crowdbot.typing import Bools, Floats
 
-from .collisions import collision_mask, mean_over_samples, neighbor_mask
+from .collisions import CONTACT, collision_mask, mean_over_samples, neighbor_mask, swept_collisions
 from .displacement import best_of, chosen_sample, distances, mean_and_final
 from .energy import energy_score
 from .likelihood import kde_nll
@@ -32,6 +32,9 @@ class PersonErrors:
         together: ``[N]``, whether the window has another scored person.
         true_collided: ``[N]``, the same share with true positions of others, including robots.
         accompanied: ``[N]``, whether anyone else is present in the ground truth.
+        swept, true_swept: ``[N, 2]``, shares of the samples in which the person comes closer than 0.2 m, and than the
+            sum of the radii, to another scored person, also between rows; and whether this is true. See
+            :func:`~crowdbot.metrics.swept_collisions`; NaN without a past or another scored person.
         nll: ``[N]`` [nat], see :func:`~crowdbot.metrics.kde_nll`; NaN if the samples have no density.
         energy: ``[N]`` [m], see :func:`~crowdbot.metrics.energy_score`, over steps; NaN for more than 100 samples.
     """
@@ -45,6 +48,8 @@ class PersonErrors:
     together: Bools
     true_collided: Floats
     accompanied: Bools
+    swept: Floats
+    true_swept: Floats
     nll: Floats
     energy: Floats
 
@@ -60,8 +65,13 @@ class PersonErrors:
         return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(cls)))
 
 
-def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> PersonErrors:
-    """Return the errors of every scored person under the rule of :func:`best_of`, window by window."""
+def person_errors(
+    forecast: Forecast, future: Windows, rule: str = "person", past: Windows | None = None
+) -> PersonErrors:
+    """Return the errors of every scored person under the rule of :func:`best_of`, window by window.
+
+    Swept collisions start at the last observed row: they need ``past``.
+    """
     distance, counted = distances(forecast, future)
     ade, fde = mean_and_final(forecast, distance, counted)
     best = best_of(ade, fde, rule)
@@ -70,6 +80,11 @@ def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> 
     hit = [
         mean_over_samples(forecast, collision_mask(forecast, future, neighbors=word)) for word in ("predicted", "true")
     ]
+    swept = np.full((2, 2, int(who.sum())), np.nan)
+    if past is not None:
+        swept = np.array(
+            [[each[who] for each in swept_collisions(forecast, past, future, at)] for at in (CONTACT, None)]
+        )
     few = forecast.samples <= MOST_FOR_ENERGY
     return PersonErrors(
         person=future.id[who],
@@ -81,6 +96,8 @@ def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> 
         together=neighbor_mask(future)[who],
         true_collided=hit[1][who],
         accompanied=neighbor_mask(future, "true")[who],
+        swept=swept[:, 0].T,
+        true_swept=swept[:, 1].T,
         nll=kde_nll(forecast, future)[who],
         energy=energy_score(forecast, future)[who] if few else np.full(int(who.sum()), np.nan),
     )

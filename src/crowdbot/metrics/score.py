@@ -21,6 +21,8 @@ from .persons import PersonErrors, person_errors
 SAMPLED = ("NLL", "energy")
 """Columns that a table of deterministic forecasts does without: they have no density, and their energy is the ADE."""
 
+SWEPT = ("swept_collisions", "swept_contacts", "swept_collisions_truth", "swept_contacts_truth")
+
 
 @dataclass(frozen=True)
 class Score:
@@ -38,6 +40,10 @@ class Score:
         collisions: share of persons, in windows with at least two, predicted closer than 0.2 m to another; NaN when
             there are none, and in pixels. ``together`` is how many persons that is a share of.
         true_collisions: the same share for others, robots too, where they truly walked; of ``accompanied`` persons.
+        swept_collisions, swept_contacts: shares of the ``together`` persons who come closer than 0.2 m, and than the
+            sum of the radii, to another scored person of the same sample; people move straight between rows, from the
+            last observed one. See :func:`~crowdbot.metrics.swept_collisions`. NaN without a past, and in pixels.
+        swept_collisions_truth, swept_contacts_truth: the same shares of the true people.
         nll: negative log-likelihood by kernel densities [nat], a mean over the ``dense`` persons whose samples have a
             density; NaN for a deterministic forecast, see :func:`~crowdbot.metrics.kde_nll`.
         energy: energy score over steps [m], see :func:`~crowdbot.metrics.energy_score`: the ADE of a deterministic
@@ -70,6 +76,10 @@ class Score:
     units: str = "m"
     true_collisions: float = math.nan
     accompanied: int = 0
+    swept_collisions: float = math.nan
+    swept_contacts: float = math.nan
+    swept_collisions_truth: float = math.nan
+    swept_contacts_truth: float = math.nan
     nll: float = math.nan
     dense: int = 0
     energy: float = math.nan
@@ -109,6 +119,7 @@ class Score:
             units=future.units,
             true_collisions=_known_mean(errors.true_collided[accompanied]),
             accompanied=int(accompanied.sum()),
+            **_swept(errors, together),
             nll=_known_mean(errors.nll[~np.isnan(errors.nll)]),
             dense=int(np.sum(~np.isnan(errors.nll))),
             energy=_known_mean(errors.energy[~np.isnan(errors.energy)]),
@@ -147,6 +158,7 @@ class Score:
         def mean(name: str, counts: Sequence[int]) -> float:
             return _mean([getattr(item, name) for item in scores], counts)
 
+        swept: dict[str, Any] = {name: mean(name, [item.together for item in scores]) for name in SWEPT}
         return dataclasses.replace(
             first,
             source=" + ".join(item.source for item in scores),
@@ -159,6 +171,7 @@ class Score:
             together=sum(item.together for item in scores),
             true_collisions=mean("true_collisions", [item.accompanied for item in scores]),
             accompanied=sum(item.accompanied for item in scores),
+            **swept,
             nll=mean("nll", [item.dense for item in scores]),
             dense=sum(item.dense for item in scores),
             energy=mean("energy", persons),
@@ -232,6 +245,8 @@ class Score:
             "NLL": "-" if math.isnan(self.nll) else f"{self.nll:.2f}{self._share_with_density()}",
             "energy": "-" if math.isnan(self.energy) else f"{self.energy:.3f}",
             "collisions": "-" if math.isnan(self.collisions) else f"{100.0 * self.collisions:.1f} %",
+            "swept (truth)": _shares(self.swept_collisions, self.swept_collisions_truth),
+            "radii (truth)": _shares(self.swept_contacts, self.swept_contacts_truth),
             "ms/window": "-" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g}",
         }
 
@@ -255,6 +270,11 @@ class Score:
             f"{self.persons} persons in {self.windows} windows",
             "" if math.isnan(self.miss_rate) else f"missed by {MISS:g} m {100 * self.miss_rate:.1f} %",
             "" if math.isnan(self.collisions) else f"collisions {100 * self.collisions:.1f} %",
+            ""
+            if math.isnan(self.swept_collisions)
+            else "swept between rows (truth) at 0.2 m"
+            f" {_shares(self.swept_collisions, self.swept_collisions_truth)}, at the radii"
+            f" {_shares(self.swept_contacts, self.swept_contacts_truth)}",
             "" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g} ms a window",
         ]
         return (
@@ -263,13 +283,14 @@ class Score:
         )
 
 
-def score(forecast: Forecast, future: Windows, best_of: str = "person") -> Score:
+def score(forecast: Forecast, future: Windows, best_of: str = "person", past: Windows | None = None) -> Score:
     """Score a forecast against what happened.
 
     Args:
         forecast: of W windows.
         future: the same windows, whose ``scored`` mask is the protocol's.
         best_of: how the best of K samples is chosen, see :func:`~crowdbot.metrics.best_of`.
+        past: the same windows; swept collisions start at their last row, and are NaN without it.
 
     Raises:
         InputError: they do not belong together, a scored person was not predicted, or nobody is scored.
@@ -281,7 +302,7 @@ def score(forecast: Forecast, future: Windows, best_of: str = "person") -> Score
     >>> print(score(Forecast.of(np.full((1, 1, 2, 1, 2), 0.1), here[:, 0], 0.4, "me"), future))
     me on street: ADE 0.141 m, FDE 0.141 m (protocol all, 2 steps of 0.4 s; 1 persons in 1 windows, missed by 2 m 0.0 %)
     """
-    errors = person_errors(forecast, future, best_of)
+    errors = person_errors(forecast, future, best_of, past)
     return Score.of(errors, forecast.predictor, forecast.samples, future, best_of)
 
 
@@ -291,7 +312,19 @@ def _values(
     """Return what the means are taken of, in the order of the intervals; NaN where a person has no part in it."""
     missed = np.where(metric, errors.fde > MISS, np.nan)
     clash = np.where(together, errors.collided, np.nan), np.where(accompanied, errors.true_collided, np.nan)
-    return [errors.ade, errors.fde, missed, *clash, errors.nll, errors.energy]
+    swept = np.where(together[:, None], errors.swept, np.nan).T
+    return [errors.ade, errors.fde, missed, *clash, *swept, errors.nll, errors.energy]
+
+
+def _swept(errors: PersonErrors, together: NDArray[np.bool_]) -> dict[str, float]:
+    """Return the shares of swept collisions by field, over the people in company."""
+    values = np.concatenate([errors.swept, errors.true_swept], axis=1)[together].T
+    return {name: _known_mean(row) for name, row in zip(SWEPT, values, strict=True)}
+
+
+def _shares(value: float, truth: float) -> str:
+    """Return a share and, in brackets, that of the truth."""
+    return "-" if math.isnan(value) else f"{100.0 * value:.1f} % ({100.0 * truth:.1f} %)"
 
 
 def _known_mean(values: NDArray[np.float64]) -> float:

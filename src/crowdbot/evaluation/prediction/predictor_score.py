@@ -59,7 +59,7 @@ def score_predictor(
         last = predictor.predict(past[part], steps, samples, rng)
         seconds += time.perf_counter() - begin
         drawn = max(drawn, last.samples)
-        errors.append(person_errors(last, future[part], best_of))
+        errors.append(person_errors(last, future[part], best_of, past[part]))
         if progress is not None:
             progress(min(1.0, (first + size) / len(past)))
     if last is None:

@@ -116,7 +116,7 @@ def predict_windows(
             past[part], future.position.shape[1], samples, rng, memory if live else None
         )
         seconds = (time.perf_counter() - begin) / len(past[part])
-        errors = person_errors(forecast, future[part], best_of)
+        errors = person_errors(forecast, future[part], best_of, past[part])
         fit = memory if isinstance(memory, Fit) else None
         frames = _frame_results(past[part], future[part], errors, fit, seconds)
         yield WindowResults(part.start, part.stop, forecast, errors, frames, fit)
