@@ -112,6 +112,57 @@ def test_places_in_degrees(tmp_path, longitude, latitude):
         assert "degrees are converted" in named.note
 
 
+def steps(longitude, latitude, both=True):
+    """Return rows of id, time, latitude and longitude of ten people, every second one of whom walks to the east."""
+    rows = []
+    for who in range(10):
+        speed = 1.1 + 0.05 * who
+        for k in range(60):
+            east, north = (0.1 * speed * k, who) if who % 2 or not both else (who, 0.1 * speed * k)
+            x = longitude + NORTH * east / np.cos(np.radians(latitude))
+            rows.append((who, 0.1 * k, latitude + NORTH * north, x))
+    return rows
+
+
+def degrees_file(path, header, rows):
+    lines = (",".join(f"{value:.10f}" if k else str(value) for k, value in enumerate(row)) for row in rows)
+    path.write_text("\n".join([header, *lines]) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("header", ["id,time,x,y", "person,t,pos_x,pos_y", "id,time,x [m],y [m]"])
+@pytest.mark.parametrize(
+    ("longitude", "latitude"),
+    [(11.58, 48.14), (139.7, 35.7), (-0.12, 51.5), (-122.3, 47.6), (-58.4, -34.6), (24.9, 60.2), (151.2, -33.9)],
+)
+def test_places_in_degrees_with_the_latitude_first(tmp_path, longitude, latitude, header):
+    path = degrees_file(tmp_path / "t.csv", header, steps(longitude, latitude))
+    (warning,) = warnings_of(path)
+    x, y = header.split(",")[2:]
+    assert "degrees of latitude (x) and longitude (y), give --units deg" in warning
+    assert f"and give --columns x={y} y={x}" in warning
+    metres = load(path, units="deg", columns={"x": y, "y": x})
+    assert "warning" not in metres.note
+    origin = float(metres.note.split("of longitude ")[1].split(",")[0])
+    assert origin == pytest.approx(longitude, abs=1e-3)
+    assert np.ptp(metres.position, axis=0) == pytest.approx([9.145, 8.85], abs=0.3)
+
+
+def test_the_order_of_degrees_is_not_taken_on_trust(tmp_path):
+    swapped = [(who, t, x, y) for who, t, y, x in steps(11.58, 48.14)]
+    (ordered,) = warnings_of(degrees_file(tmp_path / "t.csv", "id,time,x,y", swapped))
+    assert ordered.endswith("degrees of longitude (x) and latitude (y), give --units deg")
+    (unknown,) = warnings_of(degrees_file(tmp_path / "t.csv", "id,time,x,y", steps(11.58, 48.14, both=False)))
+    assert unknown.endswith("give --units deg, and if x, 48.14, is the latitude, also give --columns x=y y=x")
+    path = degrees_file(tmp_path / "t.csv", "id,time,x,y", steps(139.7, 35.7))
+    with pytest.raises(DataError, match=r"latitude is 139\.7.*x is probably the latitude.* give --columns x=y y=x"):
+        load(path, units="deg")
+    rows = [(int(who), round(10 * t), x, y) for who, t, x, y in steps(139.7, 35.7)]
+    path.write_text("\n".join(f"{frame} {who} {x:.10f} {y:.10f}" for who, frame, x, y in rows))
+    (nameless,) = warnings_of(path, fps=10.0)
+    assert nameless.endswith("give --units deg, and write a table with x and y exchanged")
+
+
 def test_degrees_that_cannot_be(tmp_path):
     path = write(tmp_path / "t.csv", "id,time,lon,lat", [(1, 0, 10, 99), (1, 1, 10, 99)])
     with pytest.raises(DataError, match="latitude is 99, but degrees of latitude are at most 90"):

@@ -66,7 +66,7 @@ def assemble(
     units = options.units or units
     columns = columns or FileColumns()
     if units == "deg":
-        place, origin = _local_metres(place[0], place[1], name)
+        place, origin = _local_metres(place[0], place[1], name, columns.exchange)
         note = "; ".join(filter(None, (note, origin)))
     elif PER_METRE[units] != 1.0:
         place = [axis / PER_METRE[units] for axis in place]
@@ -88,13 +88,16 @@ def assemble(
 
 
 def _local_metres(
-    longitude: NDArray[np.float64], latitude: NDArray[np.float64], name: str
+    longitude: NDArray[np.float64], latitude: NDArray[np.float64], name: str, exchange: str
 ) -> tuple[list[NDArray[np.float64]], str]:
     """Return metres to the east and north of the middle of all places [degrees], and a note on the origin."""
     for what, values, largest in (("longitude", longitude, 180.0), ("latitude", latitude, 90.0)):
         if np.max(np.abs(values)) > largest:
             wrong = values[np.argmax(np.abs(values))]
-            raise DataError(f"{name}: {what} is {wrong:g}, but degrees of {what} are at most {largest:g}")
+            remedy = ""
+            if what == "latitude" and abs(wrong) <= 180.0 and np.max(np.abs(longitude)) <= largest:
+                remedy = f"; x is probably the latitude and y the longitude, {exchange}"
+            raise DataError(f"{name}: {what} is {wrong:g}, but degrees of {what} are at most {largest:g}{remedy}")
     east, north = (0.5 * float(np.min(axis) + np.max(axis)) for axis in (longitude, latitude))
     x = (longitude - east) * METRES_PER_DEGREE * np.cos(np.radians(north))
     y = (latitude - north) * METRES_PER_DEGREE

@@ -17,6 +17,7 @@ from crowdbot.core import DataError
 from crowdbot.data.trajectories import Trajectories
 from crowdbot.typing import Floats
 
+from .columns import LONGITUDE
 from .reader import ReadOptions
 from .time_base import RowRateError
 
@@ -41,6 +42,10 @@ WALKED = 1.0
 WIDEST_DEGREES = 0.1
 """Largest extent of places or areas in degrees: 11 km, and as metres too small for one person."""
 METRES_PER_DEGREE = 111_195.0
+POLE = 90.0
+"""Largest latitude [degrees]."""
+UNEVEN = 0.2
+"""Logarithm of the ratio of speeds to the east and to the north by which one order of coordinates is more even."""
 SMALLER_UNITS = (("cm", 100.0), ("mm", 1000.0))
 HEAD_RANGE = 0.6
 """Largest range [m] of the heights of heads, 5 to 95 %: adults differ by 0.3 m, children and adults by 0.5 m."""
@@ -70,13 +75,20 @@ class FileColumns(NamedTuple):
         time: name of the time column that gives the time step; empty if frames and a frame rate do.
         height: name of the third coordinate; empty if there is none.
         heights: ``[N]`` values of the third coordinate, in the units of x and y.
-        named: whether the user can choose the columns by name.
+        x, y: names of the coordinates, if the user can choose the columns by name.
     """
 
     time: str = ""
     height: str = ""
     heights: NDArray[np.float64] | None = None
-    named: bool = False
+    x: str = ""
+    y: str = ""
+
+    @property
+    def exchange(self) -> str:
+        """What to do if x and y are exchanged."""
+        named = self.x and self.x.strip().lower() not in LONGITUDE
+        return f"give --columns x={self.y} y={self.x}" if named else "write a table with x and y exchanged"
 
 
 def check_walkers(tracks: Trajectories, options: ReadOptions, columns: FileColumns | None = None) -> Trajectories:
@@ -106,7 +118,7 @@ def _check(tracks: Trajectories, options: ReadOptions, columns: FileColumns) -> 
                 f" fps is frames per second, for {fps:g} rows per second give fps {fps * step:g}",
                 fps * step,
             )
-    odd = stamps or _degree_warning(tracks, options) or _speed_warning(tracks, options, speed)
+    odd = stamps or _degree_warning(tracks, options, columns) or _speed_warning(tracks, options, speed)
     steps = ("", "") if odd else (_jump_warning(tracks), _pause_warning(tracks))
     sentences = (odd, _height_warning(tracks, columns), *steps)
     warnings = [f"warning: {sentence}" for sentence in sentences if sentence]
@@ -133,23 +145,51 @@ def _stamp_warning(tracks: Trajectories, columns: FileColumns) -> str:
     )
 
 
-def _degree_warning(tracks: Trajectories, options: ReadOptions) -> str:
-    """Return a warning if places are probably longitude and latitude in degrees, else an empty text."""
+def _degree_warning(tracks: Trajectories, options: ReadOptions, columns: FileColumns) -> str:
+    """Return a warning if places are probably degrees of longitude and latitude, in any order, else an empty text."""
     x, y = tracks.x, tracks.y
     extent = max(float(np.ptp(x)), float(np.ptp(y)))
     if tracks.units != "m" or options.units is not None or not 0.0 < extent < WIDEST_DEGREES:
         return ""
-    if np.max(np.abs(x)) > 180.0 or np.max(np.abs(y)) > 180.0:
+    farthest = sorted((float(np.max(np.abs(x))), float(np.max(np.abs(y)))))
+    if farthest[0] > POLE or farthest[1] > 2.0 * POLE:
         return ""
     speed = _speeds(tracks)
     fast = float(np.percentile(speed, 90)) if len(speed) else 0.0
     walks = SLOW_WALK <= fast * METRES_PER_DEGREE <= FASTEST
     if not walks or _longest_way(tracks) * METRES_PER_DEGREE < WALKED:
         return ""
+    latitude_first = _is_latitude_first(tracks)
+    order = "latitude (x) and longitude (y)" if latitude_first else "longitude (x) and latitude (y)"
+    remedy = ", give --units deg"
+    if latitude_first:
+        remedy += f", and {columns.exchange}"
+    elif latitude_first is None:
+        remedy += f", and if x, {np.median(x):.6g}, is the latitude, also {columns.exchange}"
     return (
         f"all places are within {extent:.2g} m and 90 % of the speeds are below {fast:.2g} m/s: they are probably"
-        " degrees of longitude (x) and latitude (y), give --units deg"
+        f" degrees of {order}{remedy}"
     )
+
+
+def _is_latitude_first(tracks: Trajectories) -> bool | None:
+    """Return whether x [degrees] is the latitude; None if neither the values nor the speeds decide.
+
+    A degree of longitude is shorter than one of latitude, so people who walk to the east are faster in degrees.
+    """
+    if np.max(np.abs(tracks.y)) > POLE:
+        return True
+    if np.max(np.abs(tracks.x)) > POLE:
+        return False
+    east, north = np.abs(_velocities(tracks).T) * METRES_PER_DEGREE
+    moves = np.hypot(east, north) > MOVING
+    along = east[moves & (east > 2.0 * north)], north[moves & (north > 2.0 * east)]
+    if min(map(len, along)) < ENOUGH:
+        return None
+    ratio = math.log(float(np.median(along[0]) / np.median(along[1])))
+    cos_x, cos_y = (math.cos(math.radians(float(np.median(axis)))) for axis in (tracks.x, tracks.y))
+    given, exchanged = abs(ratio + math.log(cos_y)), abs(ratio - math.log(cos_x))
+    return exchanged < given if abs(exchanged - given) > UNEVEN else None
 
 
 def _height_warning(tracks: Trajectories, columns: FileColumns) -> str:
@@ -159,7 +199,7 @@ def _height_warning(tracks: Trajectories, columns: FileColumns) -> str:
     place = {"y": tracks.y, "x": tracks.x}
     spread = {name: _spread(values) for name, values in place.items()}
     varied = 0.0 if columns.heights is None else _spread(columns.heights)
-    remedy = f"give --columns y={columns.height or 'NAME'}" if columns.named else "write a CSV and give --columns"
+    remedy = f"give --columns y={columns.height or 'NAME'}" if columns.x else "write a CSV and give --columns"
     for name, values in place.items():
         if spread[name] < HEAD_RANGE and varied > max(1.0, 4.0 * spread[name]):
             return (
@@ -304,32 +344,36 @@ def _median_speed(tracks: Trajectories) -> float:
 
 
 def _speeds(tracks: Trajectories) -> NDArray[np.float64]:
-    """Return the speeds of people [m/s]; none if the units are pixels.
+    """Return the speeds of people [m/s]; none if the units are pixels."""
+    velocity = _velocities(tracks)
+    return np.asarray(np.hypot(velocity[:, 0], velocity[:, 1]))
+
+
+def _velocities(tracks: Trajectories) -> NDArray[np.float64]:
+    """Return velocities ``[N, 2]`` of people [m/s]; none if the units are pixels.
 
     Rows of a video are compared with those about 0.4 s before: boxes of whole pixels stand still from frame to frame.
     """
     if tracks.units != "m":
-        return np.empty(0)
+        return np.empty((0, 2))
     others = sorted(tracks.robots | tracks.other_agents.keys())
     people = ~np.isin(tracks.id, np.asarray(others, dtype=np.int64))
-    apart = _speeds_over(tracks, people, round(SPEED_TIME / tracks.dt))
+    apart = _velocities_over(tracks, people, round(SPEED_TIME / tracks.dt))
     if len(apart):
         return apart
     velocity = tracks.velocities()[people]
-    speed = np.hypot(velocity[:, 0], velocity[:, 1])
-    return np.asarray(speed[~np.isnan(speed)])
+    return np.asarray(velocity[~np.any(np.isnan(velocity), axis=1)])
 
 
-def _speeds_over(tracks: Trajectories, people: NDArray[np.bool_], rows: int) -> NDArray[np.float64]:
-    """Return the speeds of people between rows of a track that are this many rows apart [m/s]; none below 2 rows."""
+def _velocities_over(tracks: Trajectories, people: NDArray[np.bool_], rows: int) -> NDArray[np.float64]:
+    """Return velocities ``[N, 2]`` between rows of a track that are this many rows apart [m/s]; none below 2 rows."""
     if rows < 2:
-        return np.empty(0)
+        return np.empty((0, 2))
     order = np.lexsort((tracks.frame[people], tracks.id[people]))
     id, frame = tracks.id[people][order], tracks.frame[people][order]
     place = tracks.position[people][order]
     whole = (id[rows:] == id[:-rows]) & (frame[rows:] - frame[:-rows] == rows * tracks.frame_step)
-    moved = (place[rows:] - place[:-rows])[whole]
-    return np.asarray(np.hypot(moved[:, 0], moved[:, 1]) / (rows * tracks.dt))
+    return np.asarray((place[rows:] - place[:-rows])[whole] / (rows * tracks.dt))
 
 
 def _impossible(speed: float) -> bool:

@@ -271,7 +271,7 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[
         beside["clock_origin"], times = regular.origin, None
         line = line if regular.id is id else None  # positions that are interpolated are on no line
         notes = "; ".join(filter(None, (one, renamed, remark, regular.note)))
-    evidence = FileColumns(seconds, found.get("height", ""), values.get("height"), named=True)
+    evidence = FileColumns(seconds, found.get("height", ""), values.get("height"), found["x"], found["y"])
     tracks = assemble(source, options, line=line, columns=evidence, **{**rows, "note": notes, **beside, **extra})
     if times is None:
         return tracks
