@@ -350,11 +350,14 @@ def test_gazebo_has_solids_and_actors_and_names_what_it_lacks(tmp_path):
     (way,) = trial.journeys
     assert (way.then, [(stop.x, stop.y) for stop in way.stops]) == ("again", [(6.0, 3.0), (0.0, 3.0)])
     for sentence in (
-        "the included model 'table_1' is left out: its file is not beside the world",
+        "<include> of 'table_1' in line 4 is left out: model://table is not beside the world; copy its folder there, or"
+        " add its outline as <obstacle>",
         "the model 'post' can be moved in Gazebo, and is fixed here",
         "a box of the model 'ceiling' is above 1.8 m, and is left out",
-        "the model 'cart' is left out: it has joints, and is probably a robot",
-        "the mesh of the model 'chair' (chair.dae) is left out: its outline is not in the file",
+        "the model 'cart' in line 11 is left out: it has joints and a wheel (joint 'j'), and is probably a robot; add"
+        ' it as <robot x="0" y="0"/>, or as <door> if it is one',
+        "the <mesh> chair.dae of the model 'chair' in line 12 is left out: the file is not beside the world; copy it"
+        " there, or add its outline as <obstacle>",
         "the actor 'ann' waits at waypoints: here people go on at once",
         "the actor 'ann' starts 2 s later in Gazebo, here at once",
     ):
@@ -432,7 +435,8 @@ def test_a_model_that_includes_itself_is_rejected(tmp_path):
             "model://../../table",
             1,
             2,
-            "the included model 'table_1' is left out: its file is not beside the world",
+            "<include> of 'table_1' in line 4 is left out: model://../../table is not beside the world; copy its folder"
+            " there, or add its outline as <obstacle>",
         ),
     ],
 )
@@ -448,6 +452,109 @@ def test_variants_of_gazebo(tmp_path, old, new, people, obstacles, sentence):
     assert (len(trial.agents), len(trial.stage.obstacles)) == (people, obstacles)
     assert sentence is None or sentence in done.left_out
     assert trial.journeys[0].then == ("stay" if "false" in new else "again")
+
+
+TABLE = (
+    '<sdf version="1.6"><model name="table"><pose>0 0 0.5 0 0 0</pose><static>1</static><link name="l"><collision'
+    ' name="c"><geometry><box><size>2 1 1</size></box></geometry></collision></link></model></sdf>'
+)
+INCLUDE = "<include><uri>{uri}</uri><name>table_1</name>{more}</include>"
+
+
+@pytest.mark.parametrize(
+    ("file", "uri"),
+    [
+        ("package/worlds/table/model.sdf", "model://table"),
+        ("package/worlds/models/table/model.sdf", "model://table"),
+        ("package/models/table/model.sdf", "model://table"),
+        ("package/models/table/table.sdf", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/table/3"),
+        ("package/models/table/model.sdf", "file://../models/table"),
+        ("package/models/table/model.sdf", "package://package/models/table"),
+        ("package/table/model.sdf", "model://table/"),
+        ("package/models/table/model.sdf", "../models/table/model.sdf"),
+    ],
+)
+@pytest.mark.parametrize(
+    ("more", "middle"),
+    [
+        ("", (0.0, 0.0)),
+        ("<pose>3 4 0 0 0 0</pose>", (3.0, 4.0)),
+        ("<pose degrees='1'>3 4 0 0 0 90</pose><static>false</static>", (3.0, 4.0)),
+    ],
+)
+def test_models_of_a_package_are_found(tmp_path, file, uri, more, middle):
+    path = tmp_path / file
+    path.parent.mkdir(parents=True)
+    path.write_text(TABLE)
+    worlds = tmp_path / "package" / "worlds"
+    worlds.mkdir(exist_ok=True)
+    done = imported(worlds, "w.world", f"<sdf><world name='w'>{INCLUDE.format(uri=uri, more=more)}</world></sdf>")
+    (table,) = (np.array(obstacle.points) for obstacle in trial_of(done).stage.obstacles)
+    assert table.mean(axis=0) == pytest.approx(middle)  # the pose of <include> replaces that of the model
+    assert np.ptp(table, axis=0) == pytest.approx([1.0, 2.0] if "90" in more else [2.0, 1.0], abs=1e-5)
+    assert any("can be moved" in sentence for sentence in done.left_out) == ("false" in more)
+
+
+def test_models_of_gazebo_stand_where_the_saved_state_puts_them(tmp_path):
+    (tmp_path / "table").mkdir()
+    (tmp_path / "table" / "model.sdf").write_text(TABLE)
+    state = (
+        "<state world_name='w'><model name='table_1'><pose>7 8 0.5 0 0 0</pose></model>"
+        "<model name='wall'><pose>1 1 0 0 0 0</pose><scale>2 1 1</scale></model></state>"
+    )
+    done = imported(tmp_path, "hall.world", GAZEBO.replace("</world>", f"{state}</world>"))
+    middles = [np.array(obstacle.points).mean(axis=0) for obstacle in trial_of(done).stage.obstacles]
+    assert middles[0] == pytest.approx([7.0, 8.0])
+    assert middles[1] == pytest.approx([1.0, 1.0])
+    assert any(sentence.startswith("the scale of 'wall' in <state> (line 18)") for sentence in done.left_out)
+
+
+@pytest.mark.needs("trimesh")
+@pytest.mark.parametrize("ending", ["stl", "obj", "dae", "ply", "glb"])
+@pytest.mark.parametrize("place", ["hall/meshes", "models/hall/meshes"])
+def test_a_mesh_of_gazebo_becomes_walls(tmp_path, ending, place):
+    import trimesh
+
+    if ending == "dae":
+        pytest.importorskip("collada")
+    folder = tmp_path / place
+    folder.mkdir(parents=True)
+    box = trimesh.creation.box((400.0, 200.0, 250.0)).apply_translation((0.0, 0.0, 125.0))
+    box.export(folder / f"wall.{ending}")
+    mesh = f"<mesh><uri>model://hall/meshes/wall.{ending}</uri><scale>0.01 -0.01 0.01</scale></mesh>"
+    text = GAZEBO.replace("<box><size>4 0.2 2.5</size></box>", mesh).replace("0 0 1.25 0 0 0", "0 0 0 0 0 0")
+    done = imported(tmp_path, "hall.world", text)
+    (wall,) = (np.array(wall.points) for wall in trial_of(done).stage.walls)
+    assert wall[0] == pytest.approx(wall[-1])
+    assert np.ptp(wall, axis=0) == pytest.approx([2.0, 4.0], abs=0.01)
+    assert 0.5 * (wall.max(axis=0) + wall.min(axis=0)) == pytest.approx([2.0, 0.0], abs=0.01)
+    low = imported(tmp_path, "hall.world", text.replace("0.01</scale>", "0.0001</scale>"))
+    assert any("nothing of it is 0.25, 0.9, 1.6 m above" in sentence for sentence in low.left_out)
+    (folder / f"wall.{ending}").write_bytes(b"no mesh")
+    lost = imported(tmp_path, "hall.world", text)
+    assert any("the <mesh>" in sentence and "in line 6 is left out" in sentence for sentence in lost.left_out)
+
+
+HINGE = "<joint name='hinge' type='revolute'><axis><limit><lower>{}</lower><upper>{}</upper></limit></axis></joint>"
+
+
+@pytest.mark.parametrize(
+    ("joint", "robot"),
+    [
+        (HINGE.format(0, 1.57), False),
+        (HINGE.format(-1e16, 1e16), True),
+        (HINGE.format("-inf", "inf"), True),
+        ("<joint name='slide' type='prismatic'/>", False),
+        ("<joint name='wheel' type='revolute'/>", True),
+        (HINGE.format(0, 1.57) + "<plugin name='door' filename='libdoor.so'/>", True),
+    ],
+)
+def test_a_model_with_joints_is_a_robot_or_stands_still(tmp_path, joint, robot):
+    text = GAZEBO.replace('<model name="post">', f'<model name="post">{joint}')
+    done = imported(tmp_path, "hall.world", text)
+    assert len(trial_of(done).stage.obstacles) == (1 if robot else 2)
+    word = "is left out: it has joints and" if robot else "has joints: its links are fixed as they stand"
+    assert any(f"the model 'post' in line 7 {word}" in sentence for sentence in done.left_out)
 
 
 def test_an_actor_without_waypoints_stands(tmp_path):

@@ -53,8 +53,7 @@ def import_building(path: str | Path) -> ImportedTrial:
     except InputError as error:
         raise TrialError(str(error)) from None
     corners = building.corners
-    lines = np.concatenate([cut(corners, height) for height in HEIGHTS])
-    rings = _merged(lines)
+    rings = outlines(corners)
     if not rings:
         raise TrialError(f"{path}: nothing is {HEIGHTS[0]:g}, {HEIGHTS[1]:g} or {HEIGHTS[2]:g} m above the floor")
     if len(rings) > MOST_WALLS:
@@ -108,10 +107,16 @@ def cut(corners: Floats, height: float) -> Floats:
     return np.asarray((first + share * (second - first))[:, :2].reshape(-1, 2, 2))
 
 
-def _merged(lines: Floats) -> list[list[tuple[float, float]]]:
-    """Return the lines joined at their ends, straightened, each once."""
+def outlines(corners: Floats) -> list[list[tuple[float, float]]]:
+    """Return the lines in which triangles ``[T, 3, 3]`` [m] are cut at body height, joined and straightened.
+
+    >>> upright = np.array([[[0.0, 0, 0], [2, 0, 0], [2, 0, 2]], [[0, 0, 0], [2, 0, 2], [0, 0, 2]]])
+    >>> outlines(upright)
+    [[(2.0, 0.0), (0.0, 0.0)]]
+    """
     import shapely
 
+    lines = np.concatenate([cut(corners, height) for height in HEIGHTS])
     rounded = np.round(lines / GRID) * GRID
     rounded = rounded[np.any(rounded[:, 0] != rounded[:, 1], axis=1)]
     if not len(rounded):

@@ -1,4 +1,4 @@
-"""Trials from worlds of Gazebo (SDF): boxes, cylinders, spheres and outlines become solid, actors become people.
+"""Trials from worlds of Gazebo (SDF): boxes, cylinders, spheres, outlines and meshes become solid, actors people.
 
 The format is that of http://sdformat.org. Gazebo Classic (``.world``) and Gazebo (``.sdf``) are read.
 """
@@ -17,14 +17,19 @@ from crowdbot.models import CrowdModel, SocialForce
 from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from crowdbot.typing import Floats
-from crowdbot.world import frame, roll_pitch_yaw
+from crowdbot.world import frame, read_mesh, roll_pitch_yaw
 
+from .building import HEIGHTS, outlines
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, circle
 
 LOW, HIGH = 0.1, 1.8
 """Heights [m] between which a solid is in the way of people."""
 MOST_FILES, MOST_DEPTH = 200, 5
+MOST_TRIANGLES = 300_000
+"""Largest number of triangles of all meshes of a world."""
+WHOLE_TURN = 2.0 * math.pi
+"""Largest range of a hinge [rad]; a joint that turns farther is a wheel."""
 STILL = 1e-3
 """Distance [m] between waypoints at which a person waits."""
 NOTHING = ("sun", "ground_plane")
@@ -39,9 +44,10 @@ SILENT = {
 def import_gazebo(path: str | Path) -> ImportedTrial:
     """Read a world of Gazebo (root element ``sdf`` or ``gazebo`` with a ``world``).
 
-    The collisions of models that are between 0.1 and 1.8 m above the ground become solid. Included models are read if
-    they are beside the file, as ``NAME/model.sdf`` or ``models/NAME/model.sdf``. Actors walk from waypoint to waypoint
-    at their mean speed.
+    The collisions of models that are between 0.1 and 1.8 m above the ground become solid; meshes become walls where
+    they are cut at body height. Included models and meshes are read if they are beside the file, in ``models``, or in
+    the folder above or its ``models``, as in a package of ROS. Models stand where ``<state>`` puts them. Actors walk
+    from waypoint to waypoint at their mean speed.
 
     Raises:
         TrialError: the file is missing or malformed, or nothing in it can be imported.
@@ -62,7 +68,12 @@ class _Reader:
     """Converts a world."""
 
     def __init__(self, scene: ImportedScene) -> None:
-        self.scene, self.files = scene, 0
+        self.scene, self.files, self.triangles = scene, 0, 0
+        self.here = scene.path.resolve()
+        """The file that is read, the world or an included model."""
+        self.states: dict[str, Element] = {}
+        """Models of the saved state by name."""
+        self.meshes: dict[tuple[Path, tuple[float, float, float]], Floats] = {}
 
     def trial(self, world: Element) -> ImportedTrial:
         """The trial."""
@@ -71,10 +82,13 @@ class _Reader:
                 self.scene.note(f"<{part.tag[:40]}> in line {part.line} is not imported")
             elif part.tag == "plugin":
                 self.scene.note(f"the plugin {_name(part)} is not imported")
+        self.states = {
+            part.attributes.get("name", ""): part for state in world.each("state") for part in state.each("model")
+        }
         ground = np.eye(4)
         for part in world.children:
             if part.tag == "model":
-                self._model(part, ground, 0)
+                self._model(part, ground, 0, placed=self._saved(part.attributes.get("name", "")))
             elif part.tag == "include":
                 self._include(part, ground, 0)
         for part in world.each("actor"):
@@ -99,10 +113,41 @@ class _Reader:
             values[3:] = [math.radians(value) for value in values[3:]]
         return np.asarray(frame(tuple(values[:3]), roll_pitch_yaw(*values[3:])), dtype=np.float64)
 
+    def _saved(self, name: str) -> Element | None:
+        """The saved state of a model of the world, if it has a pose."""
+        state = self.states.get(name)
+        if state is None or not state.each("pose"):
+            return None
+        if any(item.stray.split() not in ([], ["1"] * 3) for item in state.each("scale")):
+            self.scene.note(f"the scale of {name[:60]!r} in <state> (line {state.line}) is not imported: set its size")
+        return state
+
+    def _where(self, part: Element) -> str:
+        """Place of an element for a note."""
+        file = "" if self.here == self.scene.path.resolve() else f" of {self.here.parent.name}/{self.here.name}"
+        return f"line {part.line}{file}"
+
+    def _find(self, uri: str, *endings: str) -> Path | None:
+        """The file of a URI beside the world or the file that is read, or in the package around the world."""
+        folder = self.scene.path.resolve().parent
+        kind, _, name = uri.rpartition("://")
+        if kind not in ("", "model", "file", "package"):
+            return None
+        name = name.removeprefix(f"{folder.parent.name}/").strip("/")
+        for start in (self.here.parent, folder, folder / "models", folder.parent, folder.parent / "models"):
+            for ending in endings or ("",):
+                try:
+                    return resolve_file(str(start / f"{name}{ending}"), folder.parent, trust=False)
+                except InputError:
+                    continue
+        return None
+
     def _include(self, part: Element, parent: Floats, depth: int) -> None:
         """Add an included model whose file is beside the world."""
         uri = next((item.stray.strip() for item in part.each("uri")), "")
-        model = uri.rpartition("model://")[2].rstrip("/")
+        if uri.startswith(("https://", "http://")):  # models of Gazebo Fuel, perhaps with a version
+            uri = f"model://{uri.rpartition('/models/')[2].partition('/')[0]}"
+        model = uri.rpartition("://")[2].rstrip("/")
         name = next((item.stray.strip() for item in part.each("name")), "") or model
         if model.rpartition("/")[2] in NOTHING:
             return
@@ -111,50 +156,72 @@ class _Reader:
             raise self.scene.error(
                 f"more than {MOST_FILES} included models, or {MOST_DEPTH} levels of them, are too many"
             )
-        folder = self.scene.path.resolve().parent
-        for file in (f"{model}/model.sdf", f"models/{model}/model.sdf", f"../models/{model}/model.sdf"):
-            if not uri.startswith("model://") or ".." in model:
-                break
-            try:
-                found = resolve_file(file, folder, trust=False)
-            except InputError:
-                continue
-            root = parse_trial_xml(read_trial_bytes(found), str(found))
-            frame_of_model = parent @ self._pose(part)
-            for inner in root.each("model"):
-                self._model(inner, frame_of_model, depth + 1, name)
+        last = model.rpartition("/")[2]
+        found = self._find(uri, "/model.sdf", f"/{last}.sdf", *([""] if last.endswith(".sdf") else []))
+        if found is None:
+            self.scene.note(
+                f"<include> of {name[:60]!r} in {self._where(part)} is left out: {uri[:80]} is not beside the world;"
+                " copy its folder there, or add its outline as <obstacle>"
+            )
             return
-        self.scene.note(f"the included model {name[:60]!r} is left out: its file is not beside the world")
+        here, self.here = self.here, found
+        root = parse_trial_xml(read_trial_bytes(found), str(found))
+        placed = (self._saved(name) if depth == 0 else None) or (part if part.each("pose") else None)
+        for inner in root.each("model"):
+            self._model(inner, parent, depth + 1, name, placed, next(iter(part.each("static")), None))
+        self.here = here
 
-    def _model(self, model: Element, parent: Floats, depth: int, name: str = "") -> None:
-        """Add the collisions of a model and of the models in it."""
+    def _model(
+        self,
+        model: Element,
+        parent: Floats,
+        depth: int,
+        name: str = "",
+        placed: Element | None = None,
+        static_override: Element | None = None,
+    ) -> None:
+        """Add the collisions of a model and of the models in it; another element may override its pose, as in SDF."""
         name = (name or _name(model)).strip("'")[:60]
-        static = next((item.stray.strip() for item in model.each("static")), "false") in ("true", "1")
+        flag = static_override or next(iter(model.each("static")), None)
+        static = flag is not None and flag.stray.strip() in ("true", "1")
+        place = parent @ self._pose(model if placed is None else placed)
         joints = [item for item in model.each("joint") if item.attributes.get("type") != "fixed"]
         if joints and not static:
-            self.scene.note(f"the model {name!r} is left out: it has joints, and is probably a robot")
-            return
+            at = f'x="{place[0, 3]:.4g}" y="{place[1, 3]:.4g}"'
+            why = _robot_part(model, joints)
+            if why:
+                self.scene.note(
+                    f"the model {name!r} in {self._where(model)} is left out: it has joints and {why}, and is probably"
+                    f" a robot; add it as <robot {at}/>, or as <door> if it is one"
+                )
+                return
+            self.scene.note(f"the model {name!r} in {self._where(model)} has joints: its links are fixed as they stand")
         if depth > MOST_DEPTH:
             raise self.scene.error(f"more than {MOST_DEPTH} levels of models are too many")
-        place = parent @ self._pose(model)
-        before = len(self.scene.obstacles)
+        before = len(self.scene.obstacles) + len(self.scene.walls)
         for link in model.each("link"):
-            at = place @ self._pose(link)
+            at_link = place @ self._pose(link)
             if not link.each("collision") and link.each("visual"):
-                self.scene.note(f"the model {name!r}: visuals without collision are not imported")
+                self.scene.note(
+                    f"the <visual> of the model {name!r} in {self._where(link)} is left out: it has no <collision>, so"
+                    " nothing collides with it in Gazebo"
+                )
             for k, collision in enumerate(link.each("collision")):
-                self._collision(name, k, collision, at @ self._pose(collision))
+                self._collision(name, k, collision, at_link @ self._pose(collision))
         for inner in model.each("model"):
             self._model(inner, place, depth + 1)
         for inner in model.each("include"):
             self._include(inner, place, depth)
-        if not static and len(self.scene.obstacles) > before:
+        if not static and len(self.scene.obstacles) + len(self.scene.walls) > before:
             self.scene.note(f"the model {name!r} can be moved in Gazebo, and is fixed here")
 
     def _collision(self, name: str, k: int, collision: Element, at: Floats) -> None:
         """Add a collision as an obstacle; one above or below people is left out."""
         shapes = [shape for geometry in collision.each("geometry") for shape in geometry.children]
         for shape in shapes:
+            if shape.tag == "mesh":
+                self._mesh(name, shape, at)
+                continue
             corners = self._corners(name, shape)
             if corners is None:
                 continue
@@ -168,6 +235,37 @@ class _Reader:
             outline = [(round(float(x), 6), round(float(y), 6)) for x, y in space[: len(space) // 2, :2]]
             hull = outline if upright else _hull(space[:, :2])
             self.scene.obstacle(hull, f"collision {k + 1} of the model {name!r}")
+
+    def _mesh(self, name: str, shape: Element, at: Floats) -> None:
+        """Add the walls in which a mesh is cut at body height."""
+        uri = next((item.stray.strip() for item in shape.each("uri")), "")
+        lost = f"the <mesh> {uri[-60:]} of the model {name!r} in {self._where(shape)} is left out"
+        remedy = "add its outline as <obstacle>"
+        found = self._find(uri) if uri else None
+        if found is None:
+            self.scene.note(f"{lost}: the file is not beside the world; copy it there, or {remedy}")
+            return
+        x, y, z = self._numbers(shape, "scale", 3, negative=True) if shape.each("scale") else (1.0, 1.0, 1.0)
+        if (found, (x, y, z)) not in self.meshes:
+            try:
+                mesh = read_mesh(found, uri, (x, y, z))
+            except InputError as error:
+                self.scene.note(f"{lost}: {error}; {remedy}")
+                return
+            self.meshes[found, (x, y, z)] = mesh.vertices[mesh.faces]
+        corners = self.meshes[found, (x, y, z)]
+        self.triangles += len(corners)
+        if self.triangles > MOST_TRIANGLES:
+            self.scene.note(f"{lost}: meshes have more than {MOST_TRIANGLES} triangles in all; {remedy}")
+            return
+        if shape.each("submesh"):
+            self.scene.note(f"the <submesh> of the model {name!r} in {self._where(shape)}: the whole mesh is imported")
+        rings = outlines(corners @ at[:3, :3].T + at[:3, 3])
+        if not rings:
+            heights = ", ".join(f"{height:g}" for height in HEIGHTS)
+            self.scene.note(f"{lost}: nothing of it is {heights} m above the ground")
+        for ring in rings:
+            self.scene.wall(ring, f"a wall of the mesh of {name!r}")
 
     def _corners(self, name: str, shape: Element) -> Floats | None:
         """Corners ``[2 N, 3]`` of a shape in its own frame, lower outline first; None if it is none of those read."""
@@ -197,19 +295,22 @@ class _Reader:
             return None
         file = next((item.stray.strip() for item in shape.each("uri")), "")
         more = f" ({file[-60:]})" if file else ""
-        self.scene.note(f"the {shape.tag[:20]} of the model {name!r}{more} is left out: its outline is not in the file")
+        self.scene.note(
+            f"the <{shape.tag[:20]}>{more} of the model {name!r} in {self._where(shape)} is left out: its outline is"
+            " not in the file; add it as <obstacle>"
+        )
         return None
 
     def _number(self, word: str, part: Element) -> float:
         return as_number(word, f"line {part.line}: <{part.tag[:40]}>")
 
-    def _numbers(self, shape: Element, tag: str, count: int) -> list[float]:
+    def _numbers(self, shape: Element, tag: str, count: int, negative: bool = False) -> list[float]:
         part = next(iter(shape.each(tag)), None)
         words = [] if part is None else part.stray.split()
         if part is None or len(words) != count:
             raise self.scene.error(f"line {shape.line}: <{shape.tag[:40]}> needs <{tag}> with {count} numbers")
         values = [self._number(word, part) for word in words]
-        if min(values) < 0.0:
+        if min(values) < 0.0 and not negative:
             raise self.scene.error(f"line {part.line}: <{tag}> must not be below 0")
         return values
 
@@ -263,6 +364,34 @@ class _Reader:
             as_number(time or "nothing", f"line {part.line}: <time>"), float(at[0, 3]),
             float(at[1, 3]), float(np.arctan2(at[1, 0], at[0, 0])),
         )  # fmt: skip
+
+
+def _robot_part(model: Element, joints: Sequence[Element]) -> str:
+    """What of a model with joints is that of a robot; empty if nothing is, as for a cabinet with a hinged door."""
+    if model.each("plugin"):
+        return "a <plugin>"
+    if any(link.each("sensor") for link in model.each("link")):
+        return "a <sensor>"
+    for joint in joints:
+        limits = [
+            item.stray.strip()
+            for axis in joint.each("axis")
+            for limit in axis.each("limit")
+            for tag in ("lower", "upper")
+            for item in limit.each(tag)
+        ]
+        kind = joint.attributes.get("type", "")
+        if kind == "continuous" or (kind == "revolute" and (len(limits) < 2 or any(map(_is_far, limits)))):
+            return f"a wheel (joint {_name(joint)})"
+    return ""
+
+
+def _is_far(limit: str) -> bool:
+    """Whether a limit of a joint is beyond a whole turn, or no number."""
+    try:
+        return not abs(float(limit)) <= WHOLE_TURN
+    except ValueError:
+        return True
 
 
 def _name(part: Element) -> str:
