@@ -577,8 +577,7 @@ def test_jupedsim_has_walls_doors_groups_and_goals(tmp_path):
     assert ways[group.journey].stops[0].points == door.zone
     for sentence in (
         "group 2: not imported are pre_movement_mean",
-        "the source '9' is not imported",
-        "<train_constraints> is not imported",
+        "<train_constraints> in line 10 is not imported",
     ):
         assert sentence in done.left_out
 
@@ -647,6 +646,61 @@ def test_what_a_behaviour_of_menge_loses_is_named(tmp_path, old, new, sentence):
     assert sentence in import_trial(tmp_path / "hallS.xml").left_out
 
 
+SOURCE = '<source id="9" frequency="2" group_id="1"/>'
+GROUP_3 = '<group group_id="3" room_id="0" number="0" goal_id="4" x_min="6" x_max="9" y_min="4" y_max="5"/>'
+
+
+@pytest.mark.parametrize(
+    ("new", "rate", "begin", "end", "most", "middle", "sentence"),
+    [
+        (SOURCE, 0.5, 0.0, math.inf, None, (2.5, 3.0), None),
+        (
+            '<source id="9" frequency="4" N_create="8" agents_max="30" time_min="5" time_max="50" group_id="3"/>',
+            2.0, 5.0, 50.0, 30, (7.5, 4.5), "source 9: 8 people each 4 s enter one after another, not at once",
+        ),
+        ('<source id="9" time="12" startX="3" startY="4" group_id="3"/>', 1.0, 12.0, math.inf, None, (3.0, 4.0), None),
+        (
+            '<source id="9" group_id="1" x_min="2" x_max="4" y_min="1" y_max="3" greedy="true" agents_max="-1"/>',
+            1.0, 0.0, math.inf, None, (3.0, 2.0), "source 9: not imported are greedy",
+        ),
+        ("<file>sources.xml</file>", 0.25, 0.0, math.inf, 7, (7.5, 4.5), None),
+    ],
+)  # fmt: skip
+def test_a_source_of_jupedsim_becomes_a_source(tmp_path, new, rate, begin, end, most, middle, sentence):
+    (tmp_path / "sources.xml").write_text(
+        '<JPScore><agents_sources><source id="2" frequency="4" agents_max="7" group_id="3"/></agents_sources></JPScore>'
+    )
+    text = PROJECT.replace(SOURCE, new).replace("</agents_distribution>", f"{GROUP_3}</agents_distribution>")
+    done = imported(tmp_path, "project.xml", text)
+    trial = trial_of(done)
+    (source,) = trial.sources
+    assert (source.rate, source.begin, source.end, source.max_count, source.timing) == (
+        rate, begin, end, most, "regular"
+    )  # fmt: skip
+    assert np.array(source.zone).mean(axis=0) == pytest.approx(middle)
+    ways = {journey.name: journey for journey in trial.journeys}
+    goal = (1.6, 1.3) if 'group_id="3"' in new or "file" in new else (10.0, 3.0)
+    assert np.array(ways[source.journey].stops[0].points).mean(axis=0) == pytest.approx(goal, abs=0.3)
+    assert sentence is None or sentence in done.left_out
+    assert parse_trial(trial_xml(trial)) == trial
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        (SOURCE, SOURCE.replace('"1"', '"7"'), "there is no group '7'; add a <source> with a zone and a goal"),
+        (SOURCE, SOURCE.replace('"2"', '"0"'), "nobody enters by its numbers"),
+        (SOURCE, SOURCE.replace("/>", ' time_min="9" time_max="3"/>'), "nobody enters by its numbers"),
+        ('x_min="1" x_max="4"', 'x_min="4" x_max="1"', "it needs a zone, and a goal or a door to the outside"),
+        (SOURCE, "<file>../s.xml</file>", "<file> of <agents_sources> in line 6 is left out: the file '../s.xml' lies"),
+    ],
+)
+def test_a_source_of_jupedsim_that_is_lost_is_named(tmp_path, old, new, sentence):
+    done = imported(tmp_path, "project.xml", PROJECT.replace(old, new))
+    assert trial_of(done).sources == ()
+    assert any("in line 6" in item and sentence in item for item in done.left_out)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "spawners", "agents", "sentence"),
     [
@@ -656,7 +710,8 @@ def test_what_a_behaviour_of_menge_loses_is_named(tmp_path, old, new, sentence):
         ('room_id="0" number="8" agent_parameter_id="1" x_min="1"', 'room_id="5" number="8"', 0, 1,
          "group 1 is in room '5', which has no walls, and is left out"),
         ('goal_id="4"', 'goal_id="5"', 1, 1, "group 2: there is no goal '5' with a polygon, people go to an exit"),
-        ('number="8"', 'number="0"', 0, 1, "group 1 has 0 people and is left out"),
+        ('group_id="1" room_id="0" number="8"', 'group_id="5" room_id="0" number="0"', 0, 1,
+         "group 5 has 0 people and is left out"),
         ('sigma="0.1"', "", 1, 1, None),
     ],
 )  # fmt: skip

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import math
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.journey import Exit, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.people import Spawner
+from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
 from .original import ImportedTrial
@@ -36,13 +37,21 @@ GROUP = {
     "group_id", "room_id", "subroom_id", "number", "goal_id", "agent_parameter_id", "x_min", "x_max", "y_min", "y_max",
     "startX", "startY", "router_id",
 }  # fmt: skip
+SOURCE = {
+    "id", "caption", "group_id", "frequency", "N_create", "agents_max", "time", "time_min", "time_max", "x_min",
+    "x_max", "y_min", "y_max", "startX", "startY",
+}  # fmt: skip
+ENTRY = 1.0
+"""Side [m] of the zone of a source at a point."""
+LONGEST = 86_400.0
 
 
 def import_jupedsim(path: str | Path) -> ImportedTrial:
     """Read a project (``JuPedSim``) or a geometry (``geometry``) of JuPedSim.
 
     Walls of subrooms become thin walls, obstacles become solid, doors to the outside become goals of people who have no
-    other, and groups become spawners in their box, or in the box around their room.
+    other, and groups become spawners in their box, or in the box around their room. Sources let the people of their
+    group enter at a regular rate.
 
     Raises:
         TrialError: a file is missing or malformed, or nothing in it can be imported.
@@ -77,6 +86,8 @@ class _Reader:
         self.scene, self.geometry = scene, geometry
         self.rooms: dict[tuple[str, str], list[Spot]] = {}
         self.exits: list[Zone] = []
+        self.files: list[Element] = []
+        """The project, and the files of goals and sources that it names."""
 
     def trial(self, project: Element | None) -> ImportedTrial:
         """The trial."""
@@ -95,11 +106,12 @@ class _Reader:
         if project is not None:
             times = _all(project, "max_sim_time")
             duration = self._number(times[0].stray, times[0], "max_sim_time") if times else None
+            self._read_files(project)
             self._people(project)
         crowd = CollisionFreeSpeed()
         ((name, trial),) = (done := self.scene.trial(duration=duration, crowd=crowd)).trials
         exits = tuple(Exit(name=f"exit{k + 1}", zone=zone.points) for k, zone in enumerate(self.exits))
-        end = dataclasses.replace(trial.end, empty=bool(trial.spawners or trial.agents))
+        end = dataclasses.replace(trial.end, empty=bool(trial.spawners or trial.agents or trial.sources))
         return ImportedTrial(((name, dataclasses.replace(trial, exits=exits, end=end)),), done.left_out)
 
     def _number(self, text: str | None, part: Element, key: str) -> float:
@@ -151,19 +163,23 @@ class _Reader:
         """Add the groups of people."""
         for part in project.children:
             if part.tag not in SILENT:
-                self.scene.note(f"<{part.tag[:40]}> is not imported")
-        for part in _all(project, "source"):
-            self.scene.note(f"the source {part.attributes.get('id', '')[:20]!r} is not imported")
-        goals = {goal.attributes.get("id", ""): goal for goal in _all(project, "goal")}
+                self.scene.note(f"<{part.tag[:40]}> in line {part.line} is not imported")
+        sources = self._everywhere("source")
+        fed = {source.attributes.get("group_id", "") for source in sources}
+        goals = {goal.attributes.get("id", ""): goal for goal in self._everywhere("goal")}
         sets = {item.attributes.get("agent_parameter_id", ""): item for item in _all(project, "agent_parameters")}
         if sets:
             self.scene.note("parameters of operational models other than the speed v0: the model has its defaults")
         count = 0
-        for group in [item for part in _all(project, "agents_distribution") for item in part.each("group")]:
+        groups = [item for part in _all(project, "agents_distribution") for item in part.each("group")]
+        for source in sources:
+            self._source(source, groups, goals, sets)
+        for group in groups:
             name = f"group {group.attributes.get('group_id', str(len(self.scene.spawners) + 1))[:20]}"
             number = int(self._value(group, "number"))
             if number < 1:
-                self.scene.note(f"{name} has {number} people and is left out")
+                if group.attributes.get("group_id", "") not in fed:
+                    self.scene.note(f"{name} has {number} people and is left out")
                 continue
             count += number
             if count > MOST_PEOPLE:
@@ -186,6 +202,74 @@ class _Reader:
                     name=name[:40], count=number, zone=Points.of(zone), journey=journey, stands=not journey, **values
                 )
             )
+
+    def _read_files(self, project: Element) -> None:
+        """Read the files of goals and sources."""
+        self.files = [project]
+        for part in [item for tag in ("goals", "agents_sources") for item in _all(project, tag)]:
+            for item in part.each("file"):
+                name = item.stray.strip()[:200]
+                try:
+                    found = resolve_file(name, self.scene.path.resolve().parent, trust=False)
+                except InputError as error:
+                    self.scene.note(
+                        f"<file> of <{part.tag}> in line {item.line} is left out: {error}; put it beside the project"
+                    )
+                    continue
+                self.files.append(parse_trial_xml(read_trial_bytes(found), str(found)))
+
+    def _everywhere(self, tag: str) -> list[Element]:
+        """Elements of the project and its files with a tag."""
+        return [item for file in self.files for item in ([file] if file.tag == tag else _all(file, tag))]
+
+    def _source(
+        self, source: Element, groups: list[Element], goals: dict[str, Element], sets: dict[str, Element]
+    ) -> None:
+        """Add a source of people of a group, who enter one after another."""
+        values = source.attributes
+        name = f"source {values.get('id', str(len(self.scene.sources) + 1))[:20]}"
+        lost = f"<source> in line {source.line} ({name}) is left out"
+        id = values.get("group_id", "")
+        group = next((item for item in groups if item.attributes.get("group_id", "") == id), None)
+        if group is None:
+            self.scene.note(f"{lost}: there is no group {id[:20]!r}; add a <source> with a zone and a goal")
+            return
+        if extra := sorted(set(values) - SOURCE):
+            self.scene.note(f"{name}: not imported are {', '.join(item[:30] for item in extra[:12])}")
+        count = self._value(source, "N_create") if "N_create" in values else 1.0
+        period = self._value(source, "frequency") if "frequency" in values else 1.0
+        most = int(self._value(source, "agents_max")) if "agents_max" in values else -1
+        begin = max(self._value(source, key) if key in values else 0.0 for key in ("time", "time_min"))
+        end = self._value(source, "time_max") if "time_max" in values else math.inf
+        if count <= 0.0 or period <= 0.0 or most == 0 or not 0.0 <= begin < end or begin > LONGEST:
+            self.scene.note(f"{lost}: nobody enters by its numbers, check frequency, N_create, agents_max and times")
+            return
+        if count > 1.0:
+            self.scene.note(f"{name}: {count:g} people each {period:g} s enter one after another, not at once")
+        if {"startX", "startY"} <= set(values):
+            zone: list[Spot] | None = box(self._value(source, "startX"), self._value(source, "startY"), ENTRY, ENTRY)
+        else:
+            own = {"x_min", "x_max", "y_min", "y_max"} <= set(values)
+            zone = self._zone(name, source if own else group)
+        stops = self._stops(name, group, goals) if zone else []
+        if zone is None or not stops:
+            self.scene.note(f"{lost}: it needs a zone, and a goal or a door to the outside; add a <source> with both")
+            return
+        speed = self._speed(sets.get(group.attributes.get("agent_parameter_id", "")))
+        options: dict[str, Any] = {} if speed is None else {"speed": speed}
+        self.scene.sources.append(
+            SourceSpec(
+                name=name[:40],
+                zone=Points.of(zone),
+                journey=self.scene.journey(stops, "leave"),
+                rate=min(1e4, count / period),
+                timing="regular",
+                begin=begin,
+                end=math.inf if end > LONGEST else end,
+                max_count=min(MOST_PEOPLE, most) if most > 0 else None,
+                **options,
+            )
+        )
 
     def _stops(self, name: str, group: Element, goals: dict[str, Element]) -> list[Zone]:
         """The goal of a group, or the nearest exit."""

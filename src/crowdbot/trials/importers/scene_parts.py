@@ -15,7 +15,7 @@ from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Routing
 from crowdbot.trials.journey import Journey, Point, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.people import Spawner
+from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import End, Trial
@@ -106,6 +106,7 @@ class ImportedScene:
     obstacles: list[Obstacle] = field(default_factory=list)
     people: list[Agent] = field(default_factory=list)
     spawners: list[Spawner] = field(default_factory=list)
+    sources: list[SourceSpec] = field(default_factory=list)
     robots: list[RobotSpec] = field(default_factory=list)
     journeys: dict[tuple[Any, str], Journey] = field(default_factory=dict)
     corners: int = 0
@@ -240,12 +241,13 @@ class ImportedScene:
         Raises:
             TrialError: nothing is left of the file.
         """
-        if not (self.walls or self.obstacles or self.people or self.spawners or self.robots or map):
+        people = bool(self.people or self.spawners or self.sources)
+        if not (self.walls or self.obstacles or people or self.robots or map):
             why = "".join(f"; {sentence}" for sentence in list(self.notes)[:3])
             raise self.error(f"there are no solids, people or robots that can be imported{why}")
         if duration is None:
             self.note(f"no end by time is in the file: the trial ends after {DURATION:g} s")
-        if not (self.people or self.spawners):
+        if not people:
             self.note("people are not in the file: add them")
         if not self.robots:
             self.note("robots are not in the file: people react to the robots that you add")
@@ -266,6 +268,7 @@ class ImportedScene:
             journeys=tuple(self.journeys.values()),
             agents=tuple(self.people),
             spawners=tuple(self.spawners),
+            sources=tuple(self.sources),
             robots=tuple(self.robots),
             end=End(goal=bool(self.robots), collision=False),
             folder=folder if map else None,
