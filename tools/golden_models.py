@@ -23,6 +23,7 @@ VARIANTS = {
     "boids": ("crowdbot",),
     "escape-panic": ("crowdbot",),
     "group-force": ("pysocialforce",),
+    "headed-social-force": ("jhsfm",),
     "social-force": ("umans2018",),
     "vbm": ("crowdbot",),
 }

@@ -10,9 +10,14 @@ import pytest
 from model_crowds import crowd, renumbered
 
 from crowdbot.core import parameters
-from crowdbot.models import Boids, EscapePanic, GroupForce
+from crowdbot.models import Boids, EscapePanic, GroupForce, HeadedSocialForce
 
-VARIANTS = [Boids(variant="crowdbot"), EscapePanic(variant="crowdbot"), GroupForce(variant="pysocialforce")]
+VARIANTS = [
+    Boids(variant="crowdbot"),
+    EscapePanic(variant="crowdbot"),
+    GroupForce(variant="pysocialforce"),
+    HeadedSocialForce(variant="jhsfm"),
+]
 every_variant = pytest.mark.parametrize("model", VARIANTS, ids=lambda model: f"{type(model).__name__}-{model.variant}")
 MANY = 300
 

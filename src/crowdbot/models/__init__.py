@@ -7,6 +7,7 @@ from .forces.boids import Boids
 from .forces.escape_panic import EscapePanic
 from .forces.generalized_centrifugal_force import GeneralizedCentrifugalForce
 from .forces.group_force import GroupForce
+from .forces.headed_social_force import HeadedSocialForce
 from .forces.power_law import PowerLaw
 from .forces.social_force import SocialForce
 from .goals import CurrentDirection, Goal, GroundTruth
@@ -42,6 +43,7 @@ __all__ = [
     "Goal",
     "GroundTruth",
     "GroupForce",
+    "HeadedSocialForce",
     "HeadwayLayer",
     "Heuristics",
     "Mixture",

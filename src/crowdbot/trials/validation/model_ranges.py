@@ -50,6 +50,7 @@ MODEL_RANGES = (
     ModelRange("escape-panic", 0.7, FREE, 0.1, PAGE, SUBSTEPS),
     ModelRange("generalized-centrifugal-force", 0.1, SLOW, 0.01, PAGE, JUPEDSIM),
     ModelRange("group-force", 0.7, FREE, 0.1, PAGE, "PySocialForce tests"),
+    ModelRange("headed-social-force", 0.7, FREE, 0.02, PAGE, "contact forces of an explicit step"),
     ModelRange("heuristics", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
     ModelRange("orca", 0.7, FREE, 0.25, PAGE, "RVO2, time step of its examples"),
     ModelRange("people", 2.0, "narrow two-way corridors are slower than in experiments", 0.05, HEADWAY, HEADWAY),
