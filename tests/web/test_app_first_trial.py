@@ -147,6 +147,39 @@ def test_nothing_waits_for_a_run_that_is_prepared_and_another_one_opens_meanwhil
 
 
 @pytest.mark.live
+def test_a_robot_is_taken_over_and_given_back_while_the_run_is_prepared(tmp_path, monkeypatch):
+    gate, inner = threading.Event(), live_run.open_run
+
+    def late(*args, **options):
+        assert gate.wait(180.0)
+        return inner(*args, **options)
+
+    monkeypatch.setattr(live_run, "open_run", late)
+    with simulator(tmp_path) as desk:
+        desk.open("frontal", {"robot/navigator/type": "social-force", "robot/navigator/relaxation": "0.7"}, paused=True)
+        desk.release("robot")  # nobody has taken it over
+        desk.take_over("robot")
+        with pytest.raises(InputError, match="there is no robot 'robo', did you mean 'robot'"):
+            desk.take_over("robo")
+        desk.drive("robot", 0.3, 0.0)
+        assert desk._status()["state"] == "preparing"
+        gate.set()
+        ready(desk)
+        robot = next(person["id"] for person in desk.people() if person["kind"] == "robot")
+        assert ["navigator", "external"] in [list(row[:2]) for row in desk.inspect(robot)["rows"]]
+        desk.release("robot")
+        assert ["navigator", "social-force"] in [list(row[:2]) for row in desk.inspect(robot)["rows"]]
+        gate.clear()
+        desk.restart()
+        desk.take_over("robot")
+        desk.release("robot")
+        gate.set()
+        ready(desk)
+        rows = {row["path"]: row["text"] for row in desk.values()}
+        assert (rows["robot/navigator/type"], rows["robot/navigator/relaxation"]) == ("social-force", "0.7")
+
+
+@pytest.mark.live
 def test_a_run_that_is_ready_late_is_shown_from_its_start(tmp_path, monkeypatch):
     monkeypatch.setattr(live_run, "SEAMLESS", 0.0)
     with simulator(tmp_path) as desk:

@@ -7,7 +7,8 @@ import pytest
 from crowdbot.core import InputError, TrialError, parse_xml
 from crowdbot.trials import builtin_trials, expand_spawners, load_trial, parse_trial, trial_xml
 from crowdbot.web import AppSession, Workspace
-from crowdbot.web.editor import EditorDesk, element_table
+from crowdbot.web.editor import EditHistory, EditorDesk, edit_history, element_table
+from crowdbot.web.editor.editor_desk import EMPTY
 
 
 @pytest.fixture
@@ -181,6 +182,42 @@ def test_other_pictures_are_refused(desk, session, data, size, sentence):
     (session.workspace.folder / "plan.png").write_bytes(data)
     with pytest.raises(InputError, match=sentence):
         desk.floor("plan.png", size)
+
+
+def test_a_server_that_is_started_again_can_undo_and_redo(session):
+    desk = session.desk("editor")
+    texts = [EMPTY.replace("60", str(seconds)) for seconds in (10, 20, 30, 40)]
+    for text in texts:
+        desk.write(text, desk.greet()["revision"])
+    desk.undo()
+    again = EditorDesk(session)  # as another server makes it
+    assert [again.undo()["text"] for _ in range(3)] == [texts[1], texts[0], EMPTY]
+    again.start("frontal")
+    again.undo()
+    third = EditorDesk(session)
+    assert (third.greet()["undo"], third.greet()["redo"]) == (False, True)
+    assert '<trial name="frontal"' in third.redo()["text"]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"texts": []}, {"texts": ["a"], "now": 1}, {"texts": ["a"], "now": True}, {"texts": ["a", 1], "now": 0},
+     {"now": 0}, {"texts": ["long"], "now": 0}, {"texts": "ab", "now": 0}],
+)  # fmt: skip
+def test_a_damaged_history_is_not_restored(values):
+    assert EditHistory.restored(values, longest=3) is None
+
+
+def test_of_a_long_history_the_texts_nearest_to_the_present_one_are_stored(monkeypatch):
+    monkeypatch.setattr(edit_history, "STORED", 10)
+    history = EditHistory("1st")
+    for text in ("2nd", "3rd", "4th"):
+        history.add(text)
+    assert history.stored() == {"texts": ["2nd", "3rd", "4th"], "now": 2}
+    history.undo(), history.undo(), history.undo()
+    assert history.stored() == {"texts": ["1st", "2nd", "3rd"], "now": 0}
+    history.add("longer than all")
+    assert history.stored() == {"texts": ["longer than all"], "now": 0}
 
 
 def test_a_server_that_is_started_again_has_the_text(tmp_path):

@@ -58,9 +58,9 @@ BODY = 0.25
 class EditorDesk(Desk):
     """The editor tab: a trial as XML text, edited by elements or as text, with checks, undo and files.
 
-    The text is stored after each edit, so a server that is started again shows it. Every edit names the revision that
-    it changes. An edit of an older revision is refused, so that two windows never
-    overwrite each other's changes without a word.
+    The text is stored after each edit with the texts before and after it, so a server that is started again shows it
+    and can undo. Every edit names the revision that it changes. An edit of an older revision is refused, so that two
+    windows never overwrite each other's changes without a word.
 
     >>> import asyncio, tempfile
     >>> from pathlib import Path
@@ -79,11 +79,11 @@ class EditorDesk(Desk):
     def __init__(self, session: DeskWindows) -> None:
         super().__init__(session)
         self._draft = DraftFile(session.workspace.folder, self.name)
-        found = self._draft.load()
-        text, file = found.get("text"), found.get("file")
-        text = text if isinstance(text, str) and len(text) <= MOST_TEXT else EMPTY
-        self._history, self._revision, self._file = EditHistory(text), 0, file if isinstance(file, str) else ""
-        self._document = _document(text)
+        draft = self._draft.load()
+        file = draft.get("file")
+        self._history = EditHistory.restored(draft, MOST_TEXT) or EditHistory(EMPTY)
+        self._revision, self._file = 0, file if isinstance(file, str) else ""
+        self._document = _document(self._history.text)
         self._trial: Trial | None = None
         self._check()
 
@@ -228,7 +228,7 @@ class EditorDesk(Desk):
     def _show(self, text: str) -> dict[str, Any]:
         self._revision += 1
         self._document = _document(text)
-        self._draft.save({"text": text, "file": self._file})
+        self._draft.save({**self._history.stored(), "file": self._file})
         self._check()
         return self._tell()
 

@@ -114,7 +114,10 @@ class LiveRun:
         self.do(lambda: self._take(order))
 
     def order_in_turn(self, orders: Sequence[Order]) -> None:
-        """Apply orders one after the other, one in each step, because each needs the one before."""
+        """Apply orders one after the other, one in each step, because each needs the one before.
+
+        Does not wait for a run that is being prepared: it applies them when it is ready, and tells those it refuses.
+        """
 
         def begin() -> None:
             self._check_open()
@@ -123,7 +126,18 @@ class LiveRun:
                 while self._chains and not self.loop.ended.is_set():
                     self._paused_step([])
 
-        self.do(begin)
+        def begin_later() -> None:
+            try:
+                begin()
+            except InputError as error:
+                if not self.problems:  # otherwise they tell why the run failed
+                    self.problems = [str(error)]
+                self._tell(self)
+
+        if self.state == "preparing":
+            self.loop.do_later(begin_later)
+        else:
+            self.do(begin)
 
     def save(self, path: Path) -> None:
         """Copy the recording; that of a run in progress ends before the current instant."""

@@ -142,15 +142,23 @@ class PacedLoop:
             except BaseException as error:
                 future.set_exception(error)
 
-        with self._changed:
-            if self._closed:
-                raise InputError("the simulation has been closed")
-            self._calls.append(call)
-            self._changed.notify_all()
+        self.do_later(call)
         try:
             return future.result(CALL)
         except TimeoutError:
             raise InputError(f"the simulation has not answered for {CALL:g} s; it may still be compiling") from None
+
+    def do_later(self, action: Callable[[], None]) -> None:
+        """Run an action, which raises nothing, in the thread between two steps, and do not wait for it.
+
+        Raises:
+            InputError: the loop is closed.
+        """
+        with self._changed:
+            if self._closed:
+                raise InputError("the simulation has been closed")
+            self._calls.append(action)
+            self._changed.notify_all()
 
     def close(self, wait: float | None = None) -> None:
         """End the thread after its current step, and wait for it at most ``wait`` [s]."""

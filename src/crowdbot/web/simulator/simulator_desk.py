@@ -521,15 +521,19 @@ class SimulatorDesk(Desk):
 
     @command
     def take_over(self, robot: str) -> None:
-        """Let the user drive a robot: its navigator becomes ``external``."""
-        run = self._live()  # waits for the run, because the stop button of a headset must not fail
+        """Let the user drive a robot: its navigator becomes ``external``.
+
+        A run that is being prepared does so as soon as it is ready, because the stop button of a headset must not fail.
+        """
+        run = self._live()
         if robot in run.controls:
             return
-        spec = run.do(lambda: _robot(run.simulation, robot))
+        prepares = run.state == "preparing"
+        spec = _robot(run.trial if prepares else run.do(lambda: run.simulation.trial), robot)
         if spec.mirror is not None or bool(getattr(spec.navigator, "source", "")):
             raise InputError(f"robot {robot!r} is moved over its own connection; the app cannot drive it")
         if not isinstance(spec.navigator, ExternalNavigator):
-            run.order(ParameterOrder(path=f"robot[{robot}]/navigator/type", value=EXTERNAL, source=SOURCE))
+            run.order_in_turn([ParameterOrder(path=f"robot[{robot}]/navigator/type", value=EXTERNAL, source=SOURCE)])
             run.taken[robot] = spec.navigator
         run.controls[robot] = HeldVelocity(robot)
 
@@ -606,8 +610,8 @@ def _free_name(simulation: Simulation) -> tuple[str, bool]:
     return name, worlds_of(simulation.world)[0].people is not None
 
 
-def _robot(simulation: Simulation, name: str) -> RobotSpec:
-    robots = {robot.name: robot for robot in simulation.trial.robots}
+def _robot(trial: Trial, name: str) -> RobotSpec:
+    robots = {robot.name: robot for robot in trial.robots}
     if name not in robots:
         raise InputError(f"there is no robot {name!r}{did_you_mean(name, robots)}; the trial has {', '.join(robots)}")
     return robots[name]
