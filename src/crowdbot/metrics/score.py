@@ -324,7 +324,7 @@ def _swept(errors: PersonErrors, together: NDArray[np.bool_]) -> dict[str, float
 
 def _shares(value: float, truth: float) -> str:
     """Return a share and, in brackets, that of the truth."""
-    return "-" if math.isnan(value) else f"{100.0 * value:.1f} % ({100.0 * truth:.1f} %)"
+    return "-" if math.isnan(value) else f"{100.0 * value:.1f} ({100.0 * truth:.1f}) %"
 
 
 def _known_mean(values: NDArray[np.float64]) -> float:
