@@ -15,7 +15,7 @@ from scipy.interpolate import griddata
 from scipy.ndimage import gaussian_filter
 
 from crowdbot.humans.asset import shapes
-from crowdbot.world.rendering.surfaces import periodic_noise
+from crowdbot.world.rendering.software_visuals import periodic_noise
 
 MOUTH, NOSE, EYE, BROW, HAIRLINE = 1.5215, 1.548, 1.590, 1.6125, 1.668
 """Heights [m] on the mean adult."""

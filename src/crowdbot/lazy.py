@@ -45,4 +45,4 @@ def lazy_exports(package: str) -> tuple[Callable[[str], Any], Callable[[], list[
     def list_names() -> list[str]:
         return sorted({*vars(sys.modules[package]), *homes})
 
-    return find, list_names, list(homes)
+    return find, list_names, sorted(homes)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, dense, stream
 from crowdbot.models.mixture import MODEL
 from crowdbot.world import PeopleSource
-from crowdbot.world.crowd.entry_room import find_busy, first_free, free_slot
+from crowdbot.world.crowd.arrivals import find_busy, first_free, free_slot
 from crowdbot.world.crowd.journey import JOURNEY
 
 Floats = NDArray[np.float64]

@@ -22,9 +22,9 @@ from crowdbot.world import (
     VelocityServo,
     WaypointSequence,
 )
-from crowdbot.world.crowd.contact_search import find_close_bodies
-from crowdbot.world.crowd.departure import leave_at_goals, leave_in_zone
+from crowdbot.world.crowd.contact import find_close_bodies
 from crowdbot.world.crowd.waypoint import PersonRandom
+from crowdbot.world.planar_phases import leave_at_goals, leave_in_zone
 
 
 def _inside(ring: Any, place: Any) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from crowdbot.world.physics.limb_poses import move_limbs
+from crowdbot.world.physics.people_bodies import move_limbs
 
 SPEEDS, STEP = np.array([5.0, 1.5, 0.2]), 0.005
 

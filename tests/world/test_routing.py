@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.world import Router
-from crowdbot.world.crowd.free_space import corners, inside, room_for
-from crowdbot.world.crowd.routing import CORNER, STRAIGHT
+from crowdbot.world.crowd.routing import CORNER, STRAIGHT, corners, inside, room_for
 from crowdbot.world.crowd.wall_cells import sees, wall_cells
 
 ROOM = [(0.0, 0.0), (0.0, 12.0), (20.0, 12.0), (20.0, 0.0)]  # clockwise: people are inside

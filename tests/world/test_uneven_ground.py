@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.world import Ground, GroundPart, PhysicsStage, PhysicsWorld, Robot, scene_bodies
-from crowdbot.world.ground.barriers import PEOPLE_STEP
-from crowdbot.world.ground.walking_speed import DOWNSTAIRS, UPSTAIRS, walking_speed_factor
+from crowdbot.world.ground.ground import PEOPLE_STEP
+from crowdbot.world.physics.world import DOWNSTAIRS, UPSTAIRS, walking_speed_factor
 
 RAMP = GroundPart(2.5, 0.0, length=3.0, width=4.0, rear=0.0, front=0.24)
 TOP = GroundPart(6.0, 0.0, length=4.0, width=4.0, rear=0.24, front=0.24)

@@ -12,7 +12,7 @@ from crowdbot.benchmark import measure_drives
 from crowdbot.benchmark.drives.laboratory import maker_robot
 from crowdbot.core import Twist
 from crowdbot.world import import_robot
-from crowdbot.world.physics.robots.castor_springs import rests_on_castors
+from crowdbot.world.physics.engine_models import rests_on_castors
 
 
 @pytest.mark.parametrize("name", VENDORS)

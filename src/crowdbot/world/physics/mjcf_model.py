@@ -11,9 +11,8 @@ import numpy as np
 from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
 from crowdbot.world.physics.robots.robot_height import base_height
-from crowdbot.world.robots.drives.ackermann import AckermannDrive
+from crowdbot.world.robots.drives.ackermann import AckermannDrive, TricycleDrive
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
-from crowdbot.world.robots.drives.tricycle import TricycleDrive
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.robots.wheel import resistance
 from crowdbot.world.urdf import BaseServo, mjcf

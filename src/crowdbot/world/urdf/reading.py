@@ -13,8 +13,7 @@ from crowdbot.core import Element, InputError, RobotError, did_you_mean, format_
 
 from .elements import UrdfReader
 from .inertia import DENSITY, solid_of
-from .links import read_link
-from .materials import read_materials
+from .links import read_link, read_materials
 from .model import JOINT_KINDS, Joint, Link, LinkInertia, Mimic, Motor, Remark, RobotModel
 from .robot_document import parse_robot_file
 

@@ -8,12 +8,10 @@ from typing import Any
 
 from crowdbot.core import InputError, did_you_mean, parse_yaml
 
-from .evaluation import Budget, evaluate
-from .expression import parse_expression
+from .evaluation import TOKENIZE, Budget, evaluate
+from .expression import parse_expression, split_text
 from .files import FileSource
-from .functions import TOKENIZE
 from .scope import Scope
-from .tokens import split_text
 
 MOST_TEXT = 100_000
 MOST_DEPTH = 20

@@ -1,7 +1,8 @@
-"""WheeledDrive: bases whose twist is limited by the speeds of their wheels."""
+"""WheeledDrive: bases whose twist is limited by the speeds of their wheels; mecanum and omnidirectional wheels."""
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from dataclasses import dataclass
 
@@ -142,3 +143,98 @@ class WheeledDrive(Drive):
             changes=(self.max_acceleration * dt, self.max_turn_acceleration * dt),
         )
         return integrate_twist(pose, after, dt), after
+
+
+@dataclass(frozen=True)
+class MecanumDrive(WheeledDrive):
+    """Mecanum drive with rollers in the usual arrangement: seen from above, their axes point along the diagonals.
+
+    With ``reach = (wheelbase + track) / 2``, the wheel speeds are
+
+    * front left and rear right: ``(forward - left -+ turn * reach) / wheel_radius``,
+    * front right and rear left: ``(forward + left +- turn * reach) / wheel_radius``.
+
+    Four wheels for three velocities: the speeds of real motions fulfil ``front left + front right = rear left + rear
+    right``, and :meth:`twist_of` returns the mean. The limits of speed apply to the velocity vector. A command beyond
+    the wheel limits is shortened to a slower one on the same curve.
+
+    Source: H. Taheri, B. Qiao, N. Ghaeminezhad, Kinematic Model of a Four Mecanum Wheeled Mobile Robot, IJCA 113(3),
+    2015.
+
+    Fields:
+        track: distance between the left and right wheels [m].
+        wheelbase: distance between the front and rear wheels [m].
+        max_speed, max_turn_rate, max_acceleration, max_turn_acceleration, wheel_radius, max_wheel_speed: as in
+            :class:`WheeledDrive`.
+
+    Raises:
+        InputError: a limit or a length is not finite and above 0.
+
+    >>> from crowdbot.core import Twist
+    >>> MecanumDrive().wheel_speeds(Twist(0.0, 0.0, left=0.5)).tolist()
+    [-5.0, 5.0, 5.0, -5.0]
+    """
+
+    track: float = 0.4
+    wheelbase: float = 0.3
+
+    sideways = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_number("MecanumDrive", "track", self.track, "m", exclusive_min=0.0)
+        check_number("MecanumDrive", "wheelbase", self.wheelbase, "m", exclusive_min=0.0)
+
+    @property
+    def matrix(self) -> Floats:
+        """Wheel speeds per twist ``[4, 3]``: front left, front right, rear left, rear right."""
+        reach = 0.5 * (self.track + self.wheelbase)
+        rows = [[1.0, -reach, -1.0], [1.0, reach, 1.0], [1.0, -reach, 1.0], [1.0, reach, -1.0]]
+        return np.array(rows) / self.wheel_radius
+
+
+@dataclass(frozen=True)
+class OmniWheelDrive(WheeledDrive):
+    """Omnidirectional wheels on a circle around the origin, as in Robotino: each rolls along the circle.
+
+    A wheel at the angle ``a`` on a circle of the radius ``distance`` turns at
+    ``(-sin(a) * forward + cos(a) * left + distance * turn) / wheel_radius``; its rollers slide along the axle, which
+    points to the centre. The limits of speed apply to the velocity vector. A command beyond the wheel limits is
+    shortened to a slower one on the same curve.
+
+    Source: R. Siegwart, I. Nourbakhsh, Introduction to Autonomous Mobile Robots, 3.2.3 (Swedish 90 degree wheels).
+
+    Fields:
+        wheels: number of wheels at equal angles, at least 3.
+        distance: distance of the wheels from the origin [m].
+        first_angle: angle of the first wheel, from the x axis [rad].
+        max_speed, max_turn_rate, max_acceleration, max_turn_acceleration, wheel_radius, max_wheel_speed: as in
+            :class:`WheeledDrive`.
+
+    Raises:
+        InputError: a limit or a length is not finite and above 0, or there are fewer than 3 wheels.
+
+    >>> from crowdbot.core import Twist
+    >>> drive = OmniWheelDrive(wheels=3, distance=0.2, wheel_radius=0.1)
+    >>> drive.wheel_speeds(Twist(0.0, 1.0)).round(9).tolist()
+    [2.0, 2.0, 2.0]
+    """
+
+    wheels: int = 3
+    distance: float = 0.2
+    first_angle: float = 0.0
+
+    sideways = 1.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_number("OmniWheelDrive", "wheels", self.wheels, min=3, whole=True)
+        check_number("OmniWheelDrive", "distance", self.distance, "m", exclusive_min=0.0)
+        check_number("OmniWheelDrive", "first_angle", self.first_angle, "rad", min=-2.0 * math.pi, max=2.0 * math.pi)
+
+    @property
+    def matrix(self) -> Floats:
+        """Wheel speeds per twist ``[W, 3]``, counter-clockwise from the first wheel."""
+        angles = self.first_angle + 2.0 * math.pi * np.arange(self.wheels) / self.wheels
+        reach = np.full(self.wheels, self.distance)
+        return np.stack([-np.sin(angles), reach, np.cos(angles)], axis=1) / self.wheel_radius
