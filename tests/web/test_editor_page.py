@@ -157,6 +157,34 @@ def test_ways_follow_an_edit_of_a_wall(editor):
     assert page.evaluate(ways) == 2
 
 
+def test_lengths_stand_at_the_walls_that_are_drawn_or_chosen(editor):
+    page = editor
+    page.evaluate(
+        """() => {
+          const { prototype } = CanvasRenderingContext2D, { fillText } = prototype;
+          prototype.fillText = function (text, ...place) {
+            (window.written ??= []).push(text);
+            return fillText.call(this, text, ...place);
+          };
+        }"""
+    )
+    wall = '<trial name="t"><stage><wall points="-2,0 2,0 2,3"/></stage></trial>'
+    page.get_by_label("XML of the trial").fill(wall)
+    page.get_by_role("option", name="wall").click()
+    page.wait_for_function("() => window.written.includes('4 m') && window.written.includes('3 m')")
+    page.get_by_role("button", name="Wall", exact=True).click()
+    x, y, scale = page.evaluate(
+        """() => {
+          const { view } = crowdbot.tab('editor').tab;
+          const bounds = view.canvas.getBoundingClientRect(), [x, y] = view.pixel([-1, 1]);
+          return [x + bounds.left, y + bounds.top, view.scale];
+        }"""
+    )
+    page.mouse.click(x, y)
+    page.mouse.move(x + 2.5 * scale, y)
+    page.wait_for_function("() => window.written.includes('2.5 m')")
+
+
 def test_the_keyboard_alone_is_enough(editor):
     page = editor
     page.get_by_role("listbox", name="Elements").focus()

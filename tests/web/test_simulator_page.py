@@ -72,6 +72,32 @@ def test_an_empty_start_shows_a_robot_among_walking_people(page, files):
     assert page.evaluate(f"{VIEW}.plots.rows.length") > 1
 
 
+def test_a_distance_is_measured_and_a_legend_explains_the_zones_of_the_trial(page, files):
+    show_from_above(page)
+    open_trial(page, "crossing-flows")
+    page.get_by_role("button", name="Pause").click()
+    legend = page.get_by_role("list", name="Legend")
+    wait(page, f"{VIEW}.picture.scene.state.description?.zones.some((zone) => zone.kind === 'start')")
+    assert legend.get_by_role("listitem").all_inner_texts()[:2] == ["Start of people", "Goal of people"]
+    assert "Portal" not in legend.inner_text()
+    page.get_by_label("Zones").uncheck()
+    wait(page, "!document.querySelector('.picture-legend').textContent.includes('Start')")
+    page.get_by_role("button", name="Measure").click()
+    box, scale = page.locator("canvas.stage").bounding_box(), page.evaluate(f"{VIEW}.picture.scene.viewpoint()[2]")
+    for share in (0.3, 0.7):
+        page.mouse.click(box["x"] + share * box["width"], box["y"] + 0.5 * box["height"])
+    note = page.locator(".picture-note")
+    note.get_by_text("m in x").wait_for()
+    assert float(note.inner_text().split(" m")[0]) == pytest.approx(0.4 * box["width"] / scale, abs=3.0 / scale + 0.01)
+    drawn = f"{VIEW}.picture.scene._measured.length"
+    assert page.evaluate(drawn) == 2
+    page.get_by_label("View", exact=True).select_option("3d")
+    assert page.evaluate(f"{VIEW}.picture.scene._measured.visible")
+    page.keyboard.press("Escape")
+    assert not page.evaluate(f"{VIEW}.picture.scene._measured.visible")
+    assert note.is_hidden()
+
+
 def test_a_view_that_is_changed_while_it_loads_is_no_error(page, files):
     wait(page, f"{VIEW}.picture.scene.info().people > 20 && {VIEW}._listing === null", FIRST_RUN / 1000)
     wait(page, f"{VIEW}.picture._loading === null")

@@ -20,6 +20,8 @@ const STYLES = {
   light: { fill: "--data-5", stroke: "--ink", dash: [] },
 };
 const REACH = 9;
+/** Shortest line [pixels] whose length is written beside it. */
+const LEGIBLE = 30;
 
 export class EditorView {
   /** @param {(text: string) => void} tell shows dimensions and what to do next */
@@ -314,6 +316,7 @@ export class EditorView {
     if (this.drag?.kind === "corner" && this.drag.shape === shape) points[this.drag.index] = this.drag.at;
     this.line(context, points, shape.closed, style);
     if (chosen && shape.attribute) for (const one of points) this.handle(context, one);
+    if (chosen && shape.style === "wall") this.drawLengths(context, points);
   }
 
   line(context, points, closed, style) {
@@ -374,9 +377,33 @@ export class EditorView {
     const all = [...this.points, this.pointer];
     if (!this.tool.mode.includes("area")) {
       this.line(context, all, false, style);
+      this.drawLengths(context, all);
       return;
     }
-    for (let i = 0; i < all.length; i += 2) if (all[i + 1]) this.line(context, rectangle(all[i], all[i + 1]), true, style);
+    for (let i = 0; i < all.length; i += 2) {
+      if (!all[i + 1]) continue;
+      const corners = rectangle(all[i], all[i + 1]);
+      this.line(context, corners, true, style);
+      this.drawLengths(context, corners.slice(0, 3));
+    }
+  }
+
+  /** Writes the length of each leg of a line beside its middle. */
+  drawLengths(context, points) {
+    context.font = "12px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.lineWidth = 4;
+    context.strokeStyle = this.colour("--paper");
+    context.fillStyle = this.colour("--ink");
+    for (let i = 1; i < points.length; i++) {
+      const [[ax, ay], [bx, by]] = [points[i - 1], points[i]];
+      const length = Math.hypot(bx - ax, by - ay);
+      if (length * this.scale < LEGIBLE) continue;
+      const [x, y] = this.pixel([(ax + bx) / 2, (ay + by) / 2]);
+      context.strokeText(`${plain(length)} m`, x, y - 6);
+      context.fillText(`${plain(length)} m`, x, y - 6);
+    }
+    context.textAlign = "start";
   }
 }
 

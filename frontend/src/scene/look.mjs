@@ -14,10 +14,20 @@ export const LOOKS = {
   },
 };
 
-/** Titles of zones, for legends. */
-export const ZONES = {
-  start: "Start", goal: "Goal", source: "Entrance", exit: "Exit", portal: "Portal", stop: "Stop",
+const ZONES = {
+  start: "Start of people", goal: "Goal of people", source: "Entrance", exit: "Exit", portal: "Portal", stop: "Stop of a journey",
 };
+/** Colours of layers that have one colour. */
+const COLOURS = { scans: "scan", clouds: "cloud", ranges: "cone", forces: "force", goals: "goal" };
+
+/** Rows of the legend for zones that a scene has, and for visible layers of one colour: [{color, text, width}]. */
+export function sceneLegend(description, layers, look) {
+  const visible = layers.filter((one) => one.visible);
+  const zones = visible.some((one) => one.name === "zones") ? description.zones.map((one) => one.kind) : null;
+  const rows = Object.keys(ZONES).filter((kind) => zones?.includes(kind)).map((kind) => ({ color: look[kind], text: ZONES[kind], width: 10 }));
+  if (zones && description.robots.some((one) => !one.ghost)) rows.push({ color: look.robotGoal, text: "Goal of a robot", width: 3 });
+  return [...rows, ...visible.flatMap(({ name, title }) => (COLOURS[name] ? [{ color: look[COLOURS[name]], text: title, width: 3 }] : []))];
+}
 
 /** Layers that a picture draws from the description and every frame; the others are asked for by name. */
 export const OWN_LAYERS = [

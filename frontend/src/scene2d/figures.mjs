@@ -8,6 +8,12 @@ const FORCE = 0.004;
 const LYING = 0.5;
 const BODY = { head: 0.4, shoulders: 0.2, feet: -0.5, width: 0.1 };
 
+/** A line between two points of the floor {x, y} that were measured, with its ends. */
+export function drawMeasured(context, from, to, look, pixel) {
+  line(context, from.x, from.y, to.x, to.y, look.mark, 2 * pixel);
+  for (const { x, y } of [from, to]) ring(context, x, y, 4 * pixel, look.mark, 2 * pixel);
+}
+
 /** Shoulders and head in the colours of clothes and hair, on the disc of the person; a line is the velocity. */
 export function drawPeople(context, state, look, pixel, mark) {
   const { who, ids, place, bones } = state.frame.arrays;

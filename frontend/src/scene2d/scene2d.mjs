@@ -3,7 +3,7 @@ import { decodeFrame } from "../net/state_frame.mjs";
 import { LOOKS, OWN_LAYERS } from "../scene/look.mjs";
 import { SceneState } from "../scene/scene_state.mjs";
 import { drawGrid, drawStage, drawZones } from "./plan.mjs";
-import { drawNames, drawPeople, drawRobots, OVERLAYS } from "./figures.mjs";
+import { drawMeasured, drawNames, drawPeople, drawRobots, OVERLAYS } from "./figures.mjs";
 import { View2D } from "./view2d.mjs";
 
 const ZOOM = 70;
@@ -134,6 +134,11 @@ export class Scene2D {
     this._look = LOOKS[this._theme];
   }
 
+  /** Draws a line between two points of the floor {x, y} [m], or none. */
+  measure(points) {
+    this._measured = points;
+  }
+
   /** Numbers of the last picture, for tests and for a text beside the canvas. */
   info() {
     return {
@@ -168,6 +173,8 @@ export class Scene2D {
       if (shown("zones")) drawZones(context, state.description, look, pixel);
       drawStage(context, state, look, pixel, shown("walls"), shown("props"));
       if (state.frame) this._figures(shown, pixel);
+      const [from, to] = this._measured ?? [];
+      if (to) drawMeasured(context, from, to, look, pixel);
     }
     this._frames += 1;
     this._spent = performance.now() - begin;

@@ -162,6 +162,13 @@ export class Scene3D {
     if (this.state.frame) this.apply(this.state.frame);
   }
 
+  /** Draws a line between two points of the floor {x, y} [m], or none. */
+  measure(points) {
+    this._measured.geometry.dispose();
+    this._measured.geometry = new THREE.BufferGeometry().setFromPoints(points.map(({ x, y }) => new THREE.Vector3(x, y, 0.03)));
+    this._measured.visible = points.length === 2;
+  }
+
   setTheme(name) {
     this._theme = name === "dark" ? "dark" : "light";
     this._look = LOOKS[this._theme];
@@ -170,7 +177,7 @@ export class Scene3D {
     this._scene.fog = new THREE.Fog(this._look.sky, 45, 170);
     this._sun.intensity = this._look.sun;
     this._dome.intensity = this._look.dome;
-    this._ring.material.color.set(this._look.mark);
+    for (const one of [this._ring, this._measured]) one.material.color.set(this._look.mark);
     if (!this.state.description) return;
     this._stage.build(this.state.description, this._look);
     this._showLayers();
@@ -256,7 +263,10 @@ export class Scene3D {
     this._overlays = overlays();
     this._ring = new THREE.Mesh(new THREE.RingGeometry(0.85, 1, 56), new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.95 }));
     this._ring.visible = false;
-    this._scene.add(this._sun, this._sun.target, this._dome, this._stage.group, this._robots.group, this._ring);
+    this._measured = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ depthTest: false, transparent: true }));
+    this._measured.visible = this._measured.frustumCulled = false;
+    this._measured.renderOrder = 1;
+    this._scene.add(this._sun, this._sun.target, this._dome, this._stage.group, this._robots.group, this._ring, this._measured);
     for (const one of Object.values(this._overlays)) this._scene.add(one.object);
   }
 

@@ -1,6 +1,6 @@
 // DisplayPanel: view, camera, and what the picture shows.
 import { legend } from "../scene/field.mjs";
-import { LOOKS } from "../scene/look.mjs";
+import { LOOKS, sceneLegend } from "../scene/look.mjs";
 import { attempt } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { CameraPanel } from "./camera_panel.mjs";
@@ -66,7 +66,10 @@ export class DisplayPanel {
     const { scene } = this.picture;
     const shown = scene.wanted();
     const look = LOOKS[this.app.theme === "dark" ? "dark" : "light"];
+    const { description } = scene.state;
+    const own = description ? sceneLegend(description, scene.layers(), look) : [];
     const rows = shown.flatMap((name) => legend(name, look, this._chosen ?? "constant-velocity"));
+    rows.unshift(...own);
     this.paths.hidden = !shown.includes("paths");
     this.legend.hidden = !rows.length;
     fill(this.legend, rows.map(({ color, text, width }) => {

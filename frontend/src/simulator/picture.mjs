@@ -22,6 +22,7 @@ export class Picture {
     this.placing = false;
     this.frames = 0;
     this.motion = new Motion();
+    this._measured = [];
     this._waiting = null;
     this._loading = null;
     this._awake = 0;
@@ -108,6 +109,13 @@ export class Picture {
     this._awake = performance.now() + AWAKE;
   }
 
+  /** Draws a line between two points of the floor {x, y} [m], or none. */
+  measure(points) {
+    this._measured = points;
+    this.scene?.measure(points);
+    this.wake();
+  }
+
   mark(kind, id) {
     if (this.scene?.state.frame) this.scene.highlight(kind, id);
     this.wake();
@@ -134,6 +142,7 @@ export class Picture {
       return this._make("2d");
     }
     this.scene.setTheme(this.app.theme);
+    this.scene.measure(this._measured);
     this._listenCanvas();
     return this.wake();
   }

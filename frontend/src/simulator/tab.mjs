@@ -280,6 +280,7 @@ class SimulatorView {
       ["j", "Event before", () => this.episode.jump(-1)],
       ["k", "Event after", () => this.episode.jump(1)],
       ["+", "Add a person by two clicks", () => this.tools.choose("person")],
+      ["m", "Measure a distance by two clicks", () => this.tools.choose("measure")],
       ["g", "Goal of the chosen one by a click", () => this.inspector.state && this.tools.choose("goal")],
       ["Delete", "Remove the chosen one", () => this.inspector.remove()],
       ["f", "Follow", () => this.display.look("follow")],

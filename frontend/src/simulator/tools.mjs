@@ -1,4 +1,4 @@
-// Tools: what the next click on the floor does: add a person or robot, set a goal, move somebody, be a person.
+// Tools: what the next click on the floor does: add a person or robot, set a goal, move somebody, be a person, measure.
 import { attempt, openDialog } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
@@ -10,6 +10,7 @@ const HINTS = {
   goal: ["Click the goal"],
   move: ["Click the new place"],
   you: ["Click where you start; the run begins anew"],
+  measure: ["Click the first point", "Click the second point"],
 };
 
 export class Tools {
@@ -21,11 +22,11 @@ export class Tools {
     this.tool = null;
     this.points = [];
     const button = (name, text) => h("button", { type: "button", "aria-pressed": "false", "data-tool": name, onclick: () => this.choose(this.tool === name ? null : name) }, text);
-    this.buttons = [button("person", "Add person"), button("robot", "Add robot"), button("you", "Be a person")];
+    this.buttons = [button("person", "Add person"), button("robot", "Add robot"), button("you", "Be a person"), button("measure", "Measure")];
     this.robot = h("select", { "aria-label": "Type of a new robot" });
     this.exact = h("button", { type: "button", onclick: () => this._dialog() }, "Add at x, y…");
-    this.scene = h("span", { class: "tools", role: "group", "aria-label": "Change the scene" }, this.buttons, this.robot, this.exact);
-    this.element = h("div", { class: "tools" }, this.scene, makeExport(app, parts.picture));
+    this.scene = h("span", { class: "tools", role: "group", "aria-label": "Change the scene" }, this.buttons.slice(0, 3), this.robot, this.exact);
+    this.element = h("div", { class: "tools" }, this.scene, this.buttons[3], makeExport(app, parts.picture));
   }
 
   know(names) {
@@ -43,6 +44,7 @@ export class Tools {
     this.tool = name;
     this.points = [];
     for (const one of this.buttons) one.setAttribute("aria-pressed", String(one.dataset.tool === name));
+    this.parts.picture.measure([]);
     this._hint();
   }
 
@@ -54,6 +56,7 @@ export class Tools {
     if (this.points.length < HINTS[tool].length) return this._hint();
     const [start, goal] = this.points;
     this.choose(null);
+    if (tool === "measure") return this._measure(start, goal);
     if (tool === "goal") return this.parts.inspector.goal(point);
     if (tool === "move") return this.parts.inspector.move(point);
     if (tool === "you") return this._become(point);
@@ -63,6 +66,13 @@ export class Tools {
   _hint() {
     this.parts.picture.placing = this.tool !== null;
     this.parts.picture.say(this.tool ? `${HINTS[this.tool][this.points.length]} (Escape cancels)` : "");
+  }
+
+  /** Shows the distance between two points until another tool is chosen. */
+  _measure(from, to) {
+    const [dx, dy] = [to.x - from.x, to.y - from.y];
+    this.parts.picture.measure([from, to]);
+    this.parts.picture.say(`${Math.hypot(dx, dy).toFixed(2)} m (${dx.toFixed(2)} m in x, ${dy.toFixed(2)} m in y; Escape removes it)`);
   }
 
   _add(kind, start, goal) {
