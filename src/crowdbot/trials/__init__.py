@@ -10,74 +10,149 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
-    from .agent import Agent, AgentParameter, Avatar
-    from .builtin import load_builtin_trial, load_trial
-    from .builtin_names import FLOWS, SIZES, builtin_trials, trial_titles
-    from .cameras.camera import OVERVIEW, Camera, overview
-    from .cameras.camera_remarks import camera_remarks
-    from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
-    from .distribution import Distribution
-    from .faults.builtin_faults import (
-        BlindSensor,
-        FrozenSensor,
-        LateSensor,
-        LocalizationJump,
-        LocalizationOffset,
-        LostCommands,
-        SlippingWheel,
-    )
-    from .faults.fault import Fault, FaultSpec, SensorFault, have_same_kinds
-    from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
-    from .files.code_references import code_digest, code_references, is_code
-    from .files.layout_file import builtin_stages, load_layout
-    from .files.stage_maps import MOST_CELLS, is_area_file, map_files
-    from .files.trial_files import recording_files, resolve_file
-    from .ground.door import Door
-    from .ground.elements import UNEVEN, Platform, Ramp, Stairs, Threshold
-    from .ground.plan import floor_plan
-    from .ground.text_plan import floor_plan_of_xml
-    from .importers.dxf import import_dxf
-    from .importers.foreign import import_trial
-    from .importers.hunavsim import import_hunavsim
-    from .importers.original import ImportedTrial, import_original, plan_of, trials_of
-    from .importers.original_order import Plan
-    from .importers.pedsim import import_pedsim
-    from .importers.recording import recorded_trial
-    from .importers.umans import import_umans
-    from .importers.vadere import import_vadere
-    from .journey import Direction, Exit, Journey, Point, Portal, Zone
-    from .notation import Points, plain
-    from .parser import check_trial, parse_trial
-    from .people import Group, SourceSpec, Spawner
-    from .placement.appearance import PeopleAppearance, people_appearance, trial_bodies, trial_clips
-    from .placement.expansion import expand_spawners
-    from .placement.placement_plan import PeopleBatch, PlacementPlan
-    from .placement.population import place
-    from .placement.spawn_placement import GAP, InitialPeople
-    from .props import Cube, Light, Table, Tree
-    from .randomized_model import RandomizedModel, own
-    from .recorded_people import RecordedPeople
-    from .robot import Mount, Planner, RobotGoal, RobotSpec
-    from .robots.joint_target import JointTarget, joint_positions
-    from .robots.passage import blind_remarks, narrow_passage, passage_remarks
-    from .robots.predictor import RobotPredictor
-    from .robots.reaction import ReactionSpec, robot_reactions
-    from .robots.robot_parts import describe_robot, override_remarks, remarks_at_end, replace_robot, robot_lines
-    from .robots.robot_pose import RobotPose
-    from .scenarios import PRESETS
-    from .scenarios.crowds import DENSITIES
-    from .stage import Obstacle, Stage, Wall, area
-    from .stage_contract import check_stage
-    from .sweep import Sweep
-    from .trial import End, EndCondition, RecordingSpec, Trial
-    from .validation.model_ranges import MODEL_RANGES, ModelRange, model_range
-    from .validation.rates import trial_remarks
-    from .validation.trial_checks import robot_place_problem
-    from .variants import apply_values, expand_sweeps
-    from .xml.element_edit import add_element, needs_trust, remove_element
-    from .xml.reader import XmlReader
-    from .xml.trial_text import parse_trial_xml, read_trial_bytes
-    from .xml.writer import element_from, trial_xml
-    from .xml.xsd import schema
+    from .agent import Agent as Agent
+    from .agent import AgentParameter as AgentParameter
+    from .agent import Avatar as Avatar
+    from .builtin import load_builtin_trial as load_builtin_trial
+    from .builtin import load_trial as load_trial
+    from .builtin_names import FLOWS as FLOWS
+    from .builtin_names import SIZES as SIZES
+    from .builtin_names import builtin_trials as builtin_trials
+    from .builtin_names import trial_titles as trial_titles
+    from .cameras.camera import OVERVIEW as OVERVIEW
+    from .cameras.camera import Camera as Camera
+    from .cameras.camera import overview as overview
+    from .cameras.camera_remarks import camera_remarks as camera_remarks
+    from .crowd import ContactSpec as ContactSpec
+    from .crowd import Crowd as Crowd
+    from .crowd import Crowds as Crowds
+    from .crowd import Limits as Limits
+    from .crowd import Routing as Routing
+    from .crowd import crowd_names as crowd_names
+    from .distribution import Distribution as Distribution
+    from .faults.builtin_faults import BlindSensor as BlindSensor
+    from .faults.builtin_faults import FrozenSensor as FrozenSensor
+    from .faults.builtin_faults import LateSensor as LateSensor
+    from .faults.builtin_faults import LocalizationJump as LocalizationJump
+    from .faults.builtin_faults import LocalizationOffset as LocalizationOffset
+    from .faults.builtin_faults import LostCommands as LostCommands
+    from .faults.builtin_faults import SlippingWheel as SlippingWheel
+    from .faults.fault import Fault as Fault
+    from .faults.fault import FaultSpec as FaultSpec
+    from .faults.fault import SensorFault as SensorFault
+    from .faults.fault import have_same_kinds as have_same_kinds
+    from .fields import UNWRITABLE as UNWRITABLE
+    from .fields import attribute as attribute
+    from .fields import check as check
+    from .fields import children as children
+    from .fields import element_word as element_word
+    from .fields import outline as outline
+    from .fields import quote_value as quote_value
+    from .files.code_references import code_digest as code_digest
+    from .files.code_references import code_references as code_references
+    from .files.code_references import is_code as is_code
+    from .files.layout_file import builtin_stages as builtin_stages
+    from .files.layout_file import load_layout as load_layout
+    from .files.stage_maps import MOST_CELLS as MOST_CELLS
+    from .files.stage_maps import is_area_file as is_area_file
+    from .files.stage_maps import map_files as map_files
+    from .files.trial_files import recording_files as recording_files
+    from .files.trial_files import resolve_file as resolve_file
+    from .ground.door import Door as Door
+    from .ground.elements import UNEVEN as UNEVEN
+    from .ground.elements import Platform as Platform
+    from .ground.elements import Ramp as Ramp
+    from .ground.elements import Stairs as Stairs
+    from .ground.elements import Threshold as Threshold
+    from .ground.plan import floor_plan as floor_plan
+    from .ground.text_plan import floor_plan_of_xml as floor_plan_of_xml
+    from .importers.dxf import import_dxf as import_dxf
+    from .importers.foreign import import_trial as import_trial
+    from .importers.hunavsim import import_hunavsim as import_hunavsim
+    from .importers.original import ImportedTrial as ImportedTrial
+    from .importers.original import import_original as import_original
+    from .importers.original import plan_of as plan_of
+    from .importers.original import trials_of as trials_of
+    from .importers.original_order import Plan as Plan
+    from .importers.pedsim import import_pedsim as import_pedsim
+    from .importers.recording import recorded_trial as recorded_trial
+    from .importers.umans import import_umans as import_umans
+    from .importers.vadere import import_vadere as import_vadere
+    from .journey import Direction as Direction
+    from .journey import Exit as Exit
+    from .journey import Journey as Journey
+    from .journey import Point as Point
+    from .journey import Portal as Portal
+    from .journey import Zone as Zone
+    from .notation import Points as Points
+    from .notation import plain as plain
+    from .parser import check_trial as check_trial
+    from .parser import parse_trial as parse_trial
+    from .people import Group as Group
+    from .people import SourceSpec as SourceSpec
+    from .people import Spawner as Spawner
+    from .placement.appearance import PeopleAppearance as PeopleAppearance
+    from .placement.appearance import people_appearance as people_appearance
+    from .placement.appearance import trial_bodies as trial_bodies
+    from .placement.appearance import trial_clips as trial_clips
+    from .placement.expansion import expand_spawners as expand_spawners
+    from .placement.placement_plan import PeopleBatch as PeopleBatch
+    from .placement.placement_plan import PlacementPlan as PlacementPlan
+    from .placement.population import place as place
+    from .placement.spawn_placement import GAP as GAP
+    from .placement.spawn_placement import InitialPeople as InitialPeople
+    from .props import Cube as Cube
+    from .props import Light as Light
+    from .props import Table as Table
+    from .props import Tree as Tree
+    from .randomized_model import RandomizedModel as RandomizedModel
+    from .randomized_model import own as own
+    from .recorded_people import RecordedPeople as RecordedPeople
+    from .robot import Mount as Mount
+    from .robot import Planner as Planner
+    from .robot import RobotGoal as RobotGoal
+    from .robot import RobotSpec as RobotSpec
+    from .robots.joint_target import JointTarget as JointTarget
+    from .robots.joint_target import joint_positions as joint_positions
+    from .robots.passage import blind_remarks as blind_remarks
+    from .robots.passage import narrow_passage as narrow_passage
+    from .robots.passage import passage_remarks as passage_remarks
+    from .robots.predictor import RobotPredictor as RobotPredictor
+    from .robots.reaction import ReactionSpec as ReactionSpec
+    from .robots.reaction import robot_reactions as robot_reactions
+    from .robots.robot_parts import describe_robot as describe_robot
+    from .robots.robot_parts import override_remarks as override_remarks
+    from .robots.robot_parts import remarks_at_end as remarks_at_end
+    from .robots.robot_parts import replace_robot as replace_robot
+    from .robots.robot_parts import robot_lines as robot_lines
+    from .robots.robot_pose import RobotPose as RobotPose
+    from .scenarios import PRESETS as PRESETS
+    from .scenarios.crowds import DENSITIES as DENSITIES
+    from .stage import Obstacle as Obstacle
+    from .stage import Stage as Stage
+    from .stage import Wall as Wall
+    from .stage import area as area
+    from .stage_contract import check_stage as check_stage
+    from .sweep import Sweep as Sweep
+    from .trial import End as End
+    from .trial import EndCondition as EndCondition
+    from .trial import RecordingSpec as RecordingSpec
+    from .trial import Trial as Trial
+    from .validation.model_ranges import MODEL_RANGES as MODEL_RANGES
+    from .validation.model_ranges import ModelRange as ModelRange
+    from .validation.model_ranges import model_range as model_range
+    from .validation.rates import trial_remarks as trial_remarks
+    from .validation.trial_checks import robot_place_problem as robot_place_problem
+    from .variants import apply_values as apply_values
+    from .variants import expand_sweeps as expand_sweeps
+    from .xml.element_edit import add_element as add_element
+    from .xml.element_edit import needs_trust as needs_trust
+    from .xml.element_edit import remove_element as remove_element
+    from .xml.reader import XmlReader as XmlReader
+    from .xml.trial_text import parse_trial_xml as parse_trial_xml
+    from .xml.trial_text import read_trial_bytes as read_trial_bytes
+    from .xml.writer import element_from as element_from
+    from .xml.writer import trial_xml as trial_xml
+    from .xml.xsd import schema as schema
 
 __getattr__, __dir__, __all__ = lazy_exports(__name__)

@@ -11,82 +11,135 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
-    from crowdbot.world.physics.robots.robot_body import RobotBody
-    from crowdbot.world.robots.drives.ackermann import AckermannDrive, SteeredTwists, TricycleDrive
-    from crowdbot.world.robots.drives.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
-    from crowdbot.world.robots.drives.legged import LeggedDrive
-    from crowdbot.world.robots.drives.servo import CommandDelay, Pending, VelocityServo
-    from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
-    from crowdbot.world.robots.drives.wheeled import MecanumDrive, OmniWheelDrive, WheeledDrive
+    from crowdbot.world.physics.robots.robot_body import RobotBody as RobotBody
+    from crowdbot.world.robots.drives.ackermann import AckermannDrive as AckermannDrive
+    from crowdbot.world.robots.drives.ackermann import SteeredTwists as SteeredTwists
+    from crowdbot.world.robots.drives.ackermann import TricycleDrive as TricycleDrive
+    from crowdbot.world.robots.drives.drive import DifferentialDrive as DifferentialDrive
+    from crowdbot.world.robots.drives.drive import Drive as Drive
+    from crowdbot.world.robots.drives.drive import Omnidirectional as Omnidirectional
+    from crowdbot.world.robots.drives.drive import Twists as Twists
+    from crowdbot.world.robots.drives.drive import integrate_twist as integrate_twist
+    from crowdbot.world.robots.drives.legged import LeggedDrive as LeggedDrive
+    from crowdbot.world.robots.drives.servo import CommandDelay as CommandDelay
+    from crowdbot.world.robots.drives.servo import Pending as Pending
+    from crowdbot.world.robots.drives.servo import VelocityServo as VelocityServo
+    from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive as SkidSteerDrive
+    from crowdbot.world.robots.drives.wheeled import MecanumDrive as MecanumDrive
+    from crowdbot.world.robots.drives.wheeled import OmniWheelDrive as OmniWheelDrive
+    from crowdbot.world.robots.drives.wheeled import WheeledDrive as WheeledDrive
 
-    from .buildings.building import Building, BuildingDoor, BuildingPart, read_building
-    from .crowd.arrivals import arrival_counts
-    from .crowd.avatars import Avatars, give_pose
-    from .crowd.contact import ContactModel
-    from .crowd.journey import JourneyAssignment, WaypointSequence
-    from .crowd.limits import CrowdLimits
-    from .crowd.people_flow import environment_seeds
-    from .crowd.portal import PortalTransfer
-    from .crowd.replay import ReplayedPeople, ReplayedTrack
-    from .crowd.routing import Router
-    from .crowd.source import PeopleSource
-    from .crowd.waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint
-    from .doors.doors import Doors
-    from .doors.leaf import DoorLeaf
-    from .doors.motion import show_doors
-    from .ground.ground import Ground
-    from .ground.part import GroundPart
-    from .live_changes import (
-        add_person,
-        check_goal,
-        check_place,
-        check_room,
-        move_agent,
-        next_person,
-        push_person,
-        redirect_person,
-        remove_person,
-        slot_of,
-    )
-    from .physics.balance.ability import BalanceAbility, balance_ability, maximum_lean
-    from .physics.balance.balance import Balance
-    from .physics.balance.fall import Fall
-    from .physics.body_region_limits import (
-        BODY_REGION_LIMITS,
-        BodyRegionLimits,
-        permitted_speed,
-        region_of,
-        two_body_force,
-    )
-    from .physics.colliders import scene_bodies
-    from .physics.contact_events import BodyContactEvent, ContactForce
-    from .physics.contacts import ContactBody
-    from .physics.people_motion import LimbCapsules, PeopleMotion
-    from .physics.scenery import add_rings
-    from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
-    from .physics.world import PhysicsWorld
-    from .planar import PlanarWorld
-    from .planar_environments import planar_world
-    from .planar_live_changes import widen
-    from .reactions.reaction import REACTIONS, RobotReaction
-    from .reactions.robot_reactions import RobotReactions, people_by_reaction, reaction_codes
-    from .rendering.camera import CameraImages, SceneCamera
-    from .rendering.gl_context import graphics_library
-    from .rendering.renderer import Renderer
-    from .robot_contract import DriveTest, check_robot, drive_tests
-    from .robots.guess_table import Guess
-    from .robots.joint_motion import check_joint, free_joints, move_joint
-    from .robots.mount import MountPlacement, SensorMount
-    from .robots.robot import Robot, builtin_robots
-    from .robots.robot_description import robot_description
-    from .robots.robot_import import RobotFolder, import_robot
-    from .robots.wheel import Wheel
-    from .robots.wheel_encoders import joint_states, simulated_body, wheel_geometry, wheel_rotation
-    from .stage_appearance import FLOORS, RANDOM, SKIES, WALL_SURFACES, StageAppearance
-    from .urdf import RobotModel, describe, read_mesh, read_urdf
-    from .urdf.link_surface import LinkSurface, link_surface
-    from .urdf.transforms import frame, quaternion, roll_pitch_yaw
-    from .world import Contact, World
-    from .world_batch import join_worlds, put_environments, select_environments, step_environments, worlds_of
+    from .buildings.building import Building as Building
+    from .buildings.building import BuildingDoor as BuildingDoor
+    from .buildings.building import BuildingPart as BuildingPart
+    from .buildings.building import read_building as read_building
+    from .crowd.arrivals import arrival_counts as arrival_counts
+    from .crowd.avatars import Avatars as Avatars
+    from .crowd.avatars import give_pose as give_pose
+    from .crowd.contact import ContactModel as ContactModel
+    from .crowd.journey import JourneyAssignment as JourneyAssignment
+    from .crowd.journey import WaypointSequence as WaypointSequence
+    from .crowd.limits import CrowdLimits as CrowdLimits
+    from .crowd.people_flow import environment_seeds as environment_seeds
+    from .crowd.portal import PortalTransfer as PortalTransfer
+    from .crowd.replay import ReplayedPeople as ReplayedPeople
+    from .crowd.replay import ReplayedTrack as ReplayedTrack
+    from .crowd.routing import Router as Router
+    from .crowd.source import PeopleSource as PeopleSource
+    from .crowd.waypoint import HeadingWaypoint as HeadingWaypoint
+    from .crowd.waypoint import PointWaypoint as PointWaypoint
+    from .crowd.waypoint import PolygonZone as PolygonZone
+    from .crowd.waypoint import Waypoint as Waypoint
+    from .doors.doors import Doors as Doors
+    from .doors.leaf import DoorLeaf as DoorLeaf
+    from .doors.motion import show_doors as show_doors
+    from .ground.ground import Ground as Ground
+    from .ground.part import GroundPart as GroundPart
+    from .live_changes import add_person as add_person
+    from .live_changes import check_goal as check_goal
+    from .live_changes import check_place as check_place
+    from .live_changes import check_room as check_room
+    from .live_changes import move_agent as move_agent
+    from .live_changes import next_person as next_person
+    from .live_changes import push_person as push_person
+    from .live_changes import redirect_person as redirect_person
+    from .live_changes import remove_person as remove_person
+    from .live_changes import slot_of as slot_of
+    from .physics.balance.ability import BalanceAbility as BalanceAbility
+    from .physics.balance.ability import balance_ability as balance_ability
+    from .physics.balance.ability import maximum_lean as maximum_lean
+    from .physics.balance.balance import Balance as Balance
+    from .physics.balance.fall import Fall as Fall
+    from .physics.body_region_limits import BODY_REGION_LIMITS as BODY_REGION_LIMITS
+    from .physics.body_region_limits import BodyRegionLimits as BodyRegionLimits
+    from .physics.body_region_limits import permitted_speed as permitted_speed
+    from .physics.body_region_limits import region_of as region_of
+    from .physics.body_region_limits import two_body_force as two_body_force
+    from .physics.colliders import scene_bodies as scene_bodies
+    from .physics.contact_events import BodyContactEvent as BodyContactEvent
+    from .physics.contact_events import ContactForce as ContactForce
+    from .physics.contacts import ContactBody as ContactBody
+    from .physics.people_motion import LimbCapsules as LimbCapsules
+    from .physics.people_motion import PeopleMotion as PeopleMotion
+    from .physics.scenery import add_rings as add_rings
+    from .physics.stage import CubeBody as CubeBody
+    from .physics.stage import LightSource as LightSource
+    from .physics.stage import PhysicsStage as PhysicsStage
+    from .physics.stage import PropBody as PropBody
+    from .physics.stage import TableBody as TableBody
+    from .physics.stage import TreeBody as TreeBody
+    from .physics.world import PhysicsWorld as PhysicsWorld
+    from .planar import PlanarWorld as PlanarWorld
+    from .planar_environments import planar_world as planar_world
+    from .planar_live_changes import widen as widen
+    from .reactions.reaction import REACTIONS as REACTIONS
+    from .reactions.reaction import RobotReaction as RobotReaction
+    from .reactions.robot_reactions import RobotReactions as RobotReactions
+    from .reactions.robot_reactions import people_by_reaction as people_by_reaction
+    from .reactions.robot_reactions import reaction_codes as reaction_codes
+    from .rendering.camera import CameraImages as CameraImages
+    from .rendering.camera import SceneCamera as SceneCamera
+    from .rendering.gl_context import graphics_library as graphics_library
+    from .rendering.renderer import Renderer as Renderer
+    from .robot_contract import DriveTest as DriveTest
+    from .robot_contract import check_robot as check_robot
+    from .robot_contract import drive_tests as drive_tests
+    from .robots.guess_table import Guess as Guess
+    from .robots.joint_motion import check_joint as check_joint
+    from .robots.joint_motion import free_joints as free_joints
+    from .robots.joint_motion import move_joint as move_joint
+    from .robots.mount import MountPlacement as MountPlacement
+    from .robots.mount import SensorMount as SensorMount
+    from .robots.robot import Robot as Robot
+    from .robots.robot import builtin_robots as builtin_robots
+    from .robots.robot_description import robot_description as robot_description
+    from .robots.robot_import import RobotFolder as RobotFolder
+    from .robots.robot_import import import_robot as import_robot
+    from .robots.wheel import Wheel as Wheel
+    from .robots.wheel_encoders import joint_states as joint_states
+    from .robots.wheel_encoders import simulated_body as simulated_body
+    from .robots.wheel_encoders import wheel_geometry as wheel_geometry
+    from .robots.wheel_encoders import wheel_rotation as wheel_rotation
+    from .stage_appearance import FLOORS as FLOORS
+    from .stage_appearance import RANDOM as RANDOM
+    from .stage_appearance import SKIES as SKIES
+    from .stage_appearance import WALL_SURFACES as WALL_SURFACES
+    from .stage_appearance import StageAppearance as StageAppearance
+    from .urdf import RobotModel as RobotModel
+    from .urdf import describe as describe
+    from .urdf import read_mesh as read_mesh
+    from .urdf import read_urdf as read_urdf
+    from .urdf.link_surface import LinkSurface as LinkSurface
+    from .urdf.link_surface import link_surface as link_surface
+    from .urdf.transforms import frame as frame
+    from .urdf.transforms import quaternion as quaternion
+    from .urdf.transforms import roll_pitch_yaw as roll_pitch_yaw
+    from .world import Contact as Contact
+    from .world import World as World
+    from .world_batch import join_worlds as join_worlds
+    from .world_batch import put_environments as put_environments
+    from .world_batch import select_environments as select_environments
+    from .world_batch import step_environments as step_environments
+    from .world_batch import worlds_of as worlds_of
 
 __getattr__, __dir__, __all__ = lazy_exports(__name__)
