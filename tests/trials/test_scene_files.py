@@ -5,6 +5,8 @@ import random
 
 import numpy as np
 import pytest
+import shapely
+from PIL import Image
 
 from crowdbot.cli import main
 from crowdbot.core import TrialError
@@ -177,9 +179,9 @@ def test_irsim_has_obstacles_people_and_robots(tmp_path):
         (
             "    state: [2, 8, 0]\n",
             "    number: 3\n    distribution: {name: random}\n",
-            0,
+            3,
             1,
-            "obstacle 3 is placed at random (3 objects) and is left out: place them",
+            "obstacle 3: IR-SIM draws its 3 places in each run, here they are drawn once",
         ),
         ("    state: [6, 5, 0]\n", "    number: 2\n    state: [[6, 5, 0], [9, 2, 1]]\n", 1, 2, None),
         (
@@ -193,8 +195,8 @@ def test_irsim_has_obstacles_people_and_robots(tmp_path):
             "{name: 'rectangle', length: 2.0, width: 1.0}",
             "{name: polygon, random_shape: true}",
             1,
-            0,
-            "obstacle_1 has a random shape and is left out",
+            1,
+            "obstacle 1 has random shapes in IR-SIM, here they are drawn once",
         ),
         (
             "    state: [6, 5, 0]\n",
@@ -208,8 +210,8 @@ def test_irsim_has_obstacles_people_and_robots(tmp_path):
             "obstacle_map: cave.png",
             1,
             1,
-            "the map 'cave.png' is not imported: write a ROS map (.yaml) with its resolution, and name it in <stage"
-            " map>",
+            "the obstacle_map 'cave.png' of world is left out: there is no file 'cave.png' in {folder}; put its image"
+            " beside the world",
         ),
         (
             "name: rvo, vxmax: 1.2,",
@@ -231,7 +233,50 @@ def test_variants_of_irsim(tmp_path, old, new, people, obstacles, sentence):
     done = imported(tmp_path, "world.yaml", text)
     trial = trial_of(done)
     assert (len(trial.agents), len(trial.stage.obstacles)) == (people, obstacles)
-    assert sentence is None or sentence in done.left_out
+    assert sentence is None or sentence.replace("{folder}", str(tmp_path.resolve())) in done.left_out
+
+
+@pytest.mark.parametrize("form", ["cave.png", "{path: cave.png}", "{name: image, path: cave.png}", "./cave.png"])
+@pytest.mark.parametrize("mode", ["L", "RGB", "RGBA", "1"])
+def test_the_grid_map_of_irsim_becomes_solid(tmp_path, form, mode):
+    cells = np.full((24, 32), 255, dtype=np.uint8)
+    cells[[0, -1]] = cells[:, [0, -1]] = 0
+    cells[4:8, 6:10] = 40
+    cells = np.kron(cells, np.ones((8, 8), dtype=np.uint8))
+    Image.fromarray(cells).convert(mode, dither=Image.Dither.NONE).save(tmp_path / "cave.png")
+    text = IRSIM.replace("control_mode: auto", f"obstacle_map: {form}, offset: [-1, 2]")
+    done = imported(tmp_path, "world.yaml", text)
+    shapes = [shapely.Polygon(obstacle.points) for obstacle in trial_of(done).stage.obstacles]
+    assert not any("obstacle_map" in sentence for sentence in done.left_out)
+    grid = shapely.union_all(shapes).difference(shapely.box(5, 4.5, 7, 5.5))
+    assert grid.bounds == pytest.approx((-1.0, 2.0, 15.0, 14.0))
+    block = shapely.box(2.0, 10.0, 4.0, 12.0)  # rows from the top, 0.5 m each
+    border = shapely.box(-1.0, 2.0, 15.0, 14.0).difference(shapely.box(-0.5, 2.5, 14.5, 13.5))
+    expected = block.union(border).difference(shapely.box(5, 4.5, 7, 5.5))
+    assert shapely.hausdorff_distance(grid, expected) <= 0.0625 + 1e-9  # borders are simplified by one cell
+    assert grid.symmetric_difference(expected).area < 2.0
+
+
+def test_random_worlds_of_irsim_are_drawn_once(tmp_path):
+    ranges = "{name: random, range_low: [3, 4, 0], range_high: [23, 24, 1]}"
+    crowd = f"  - number: 9\n    distribution: {ranges}\n    kinematics: {{name: omni}}\n    behavior: {{name: rvo}}\n"
+    crowd += "    shape: {name: circle, radius: 0.3}\n"
+    posts = f"  - number: 5\n    distribution: {ranges}\n    shape: [{{name: circle, random_shape: true}}]\n"
+    done = imported(tmp_path, "world.yaml", IRSIM + crowd + posts)
+    trial = trial_of(done)
+    people = np.array([agent.position for agent in trial.agents[1:]])
+    posts = np.array([np.mean(obstacle.points, axis=0) for obstacle in trial.stage.obstacles[1:]])
+    assert (len(people), len(posts)) == (9, 5)
+    places = np.concatenate([people, posts])
+    assert np.all((places >= [2.9, 3.9]) & (places <= [23.1, 24.1]))
+    apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1)) + 9.0 * np.eye(14)
+    assert apart.min() > 0.6
+    check_trial(trial)
+    goals = {(stop.x, stop.y) for journey in trial.journeys[1:] for stop in journey.stops}
+    assert len(goals) == 9
+    assert trial_of(imported(tmp_path, "world.yaml", IRSIM + crowd)).agents == trial.agents
+    with pytest.raises(TrialError, match="range_low must not be above range_high"):
+        imported(tmp_path, "world.yaml", IRSIM + crowd.replace("[3, 4, 0]", "[33, 4, 0]"))
 
 
 def test_people_on_a_circle_of_irsim_walk_across(tmp_path):

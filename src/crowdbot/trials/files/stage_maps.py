@@ -234,6 +234,41 @@ def map_of(
     return tuple(placement.place(np.array(solids, dtype=object), name)) if solids else ()
 
 
+def image_solids(path: Path, width: float, height: float) -> list[shapely.Polygon]:
+    """Return the dark half of an image that covers a world as polygons without holes.
+
+    Args:
+        path: image in one of the formats of maps.
+        width, height: extent [m] of the image, whose lower left corner is the origin.
+
+    Raises:
+        InputError: the image is too large or detailed, or cannot be read.
+    """
+    import shapely
+
+    stamp = path.stat()
+    rows, columns = _pixels(read_beside(path, MOST_IMAGE), path.name)[0].shape[:2]
+    cells = _Map(path.name, 1.0, (0.0, 0.0, 0.0), False, 0.5, 0.5, "scale")
+    scale = np.array([width / columns, height / rows])
+    solids = _solids(path, stamp.st_mtime_ns, stamp.st_size, cells, "free")
+    pieces = [piece for solid in solids for piece in _without_holes(solid)]
+    return [shapely.transform(piece, lambda points: points * scale) for piece in pieces]
+
+
+def _without_holes(shape: shapely.Polygon) -> list[shapely.Polygon]:
+    """Return the polygon, divided at the middle hole until no part has one."""
+    import shapely
+
+    if not shape.interiors:
+        return [shape]
+    middles = sorted(ring.centroid.x for ring in shape.interiors)
+    at = middles[len(middles) // 2]
+    west, south, east, north = shape.bounds
+    halves = (shapely.box(west, south, at, north), shapely.box(at, south, east, north))
+    parts = [part for half in halves for part in _parts(shape.intersection(half))]
+    return [piece for part in parts if part.geom_type == "Polygon" for piece in _without_holes(part)]
+
+
 def map_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
     """Return the files of a map by name, the ``.yaml`` file and its image; arguments as in :func:`map_of`."""
     path, row, image = _map_of(name, folder, trust)

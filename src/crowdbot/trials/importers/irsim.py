@@ -9,7 +9,12 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from crowdbot.core import InputError
 from crowdbot.models import ORCA, CrowdModel, SocialForce
+from crowdbot.trials.files.stage_maps import image_solids
+from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.journey import Point
 
 from .foreign_text import yaml_of
@@ -19,7 +24,9 @@ from .scene_parts import ImportedScene, as_number, box, circle, move, number_in
 Spot = tuple[float, float]
 STATE, SPEED, GOAL_RADIUS = (1.0, 1.0, 0.0), 1.0, 0.1
 """Defaults of IR-SIM: the place of an object, its largest speed [m/s], and the distance at arrival [m]."""
-MOST_OBJECTS = 5000
+MOST_OBJECTS, MOST_DRAWS = 5000, 200
+RANGE = (0.0, 0.0, -math.pi), (10.0, 10.0, math.pi)
+"""Default range of random places: x, y [m] and heading [rad]."""
 WORLD = {"height", "width", "step_time", "sample_time", "offset", "name", "plot", "status"}
 """Keys of the world that do not change the scene, or that are read."""
 READ = {
@@ -37,7 +44,8 @@ def is_irsim(whole: Any) -> bool:
 def import_irsim(path: str | Path) -> ImportedTrial:
     """Read a world of IR-SIM (YAML with ``world``, ``robot`` and ``obstacle``).
 
-    Obstacles without a behaviour become solid, those with one become people, and robots stay robots.
+    Obstacles without a behaviour become solid, those with one become people, and robots stay robots. The dark half of
+    an image ``obstacle_map`` becomes solid. Random places and shapes are drawn once.
 
     Raises:
         TrialError: the file is missing or malformed, or nothing in it can be imported.
@@ -61,6 +69,11 @@ class _Reader:
     def __init__(self, scene: ImportedScene, world: dict[Any, Any]) -> None:
         self.scene, self.world = scene, world
         self.models: list[CrowdModel] = []
+        self.rng = np.random.default_rng(0)
+        self.drawn: list[tuple[float, float, float]] = []
+        """Places that are drawn, with the radius [m] of what is there."""
+        self.solids: Any = None
+        """Solids at places of the file, a geometry of shapely, once they are read."""
 
     def trial(self, content: dict[Any, Any]) -> ImportedTrial:
         """The trial."""
@@ -70,15 +83,11 @@ class _Reader:
         for key, value in self.world.items():
             if key not in WORLD and value is not None and key != "obstacle_map":
                 self.scene.note(f"world: {str(key)[:40]} is not imported")
-        grid = self.world.get("obstacle_map")
-        if grid is not None:
-            name = grid.get("path") or grid.get("name") if isinstance(grid, dict) else grid
-            self.scene.note(
-                f"the map {str(name)[:60]!r} is not imported: write a ROS map (.yaml) with its resolution,"
-                " and name it in <stage map>"
-            )
+        if self.world.get("obstacle_map") is not None:
+            self._grid(self.world["obstacle_map"])
         self.scene.note("the border of the world is no wall, as in IR-SIM")
         count = 0
+        entries: list[tuple[str, str, dict[Any, Any], int]] = []
         for role in ("obstacle", "robot"):
             rows = content.get(role) or []
             for k, row in enumerate(rows if isinstance(rows, list) else [rows]):
@@ -89,9 +98,44 @@ class _Reader:
                 count += max(0, number)
                 if count > MOST_OBJECTS:
                     raise self.scene.error(f"more than {MOST_OBJECTS} objects are too many")
-                self._group(label, str(row.get("role") or role), row, number)
+                entries.append((label, str(row.get("role") or role), row, number))
+        for entry in entries:
+            if not _is_random(*entry[2:]):
+                self._group(*entry)
+        self.solids = self._fixed_solids()
+        for entry in entries:
+            if _is_random(*entry[2:]):
+                self._group(*entry)
         step = min(1.0, max(0.001, number_in(self.world, "step_time", "world", 0.1)))
         return self.scene.trial(step=step, crowd=self.models[0] if self.models else None)
+
+    def _fixed_solids(self) -> Any:
+        """The solids and walls so far as one geometry of shapely."""
+        import shapely
+
+        polygons = [shapely.Polygon(item.points) for item in self.scene.obstacles]
+        return shapely.union_all([*polygons, *(shapely.LineString(item.points) for item in self.scene.walls)])
+
+    def _grid(self, grid: Any) -> None:
+        """Add the dark cells of an image that covers the world."""
+        own = grid if isinstance(grid, dict) else {"path": grid}
+        name = str(own.get("path") or own.get("name") or "")[:200]
+        lost, remedy = f"the obstacle_map {name[:60]!r} of world is left out", "put its image beside the world"
+        if own.get("path") is None:
+            self.scene.note(f"{lost}: IR-SIM makes it at random; save it as an image, and {remedy}")
+            return
+        width, height = (number_in(self.world, key, "world", 10.0) for key in ("width", "height"))
+        low = self.world.get("offset") or [0.0, 0.0]
+        x, y = _at(low, 0, "world: offset"), _at(low, 1, "world: offset")
+        folder = self.scene.path.resolve().parent
+        try:
+            solids = image_solids(resolve_file(name, folder, trust=False), width, height)
+        except InputError as error:
+            self.scene.note(f"{lost}: {error}; {remedy}")
+            return
+        for solid in solids:
+            spots = [(round(x + u, 6), round(y + v, 6)) for u, v in solid.exterior.coords[:-1]]
+            self.scene.obstacle(spots, "a part of the obstacle_map")
 
     def _group(self, label: str, role: str, row: dict[Any, Any], number: int) -> None:
         """Add the objects of one entry."""
@@ -107,6 +151,8 @@ class _Reader:
             shape = _item(row.get("shape"), k, dict) or {"name": "circle"}
             if not isinstance(shape, dict):
                 raise self.scene.error(f"{name}: shape must be a mapping, such as {{name: circle, radius: 0.2}}")
+            if shape.get("random_shape"):
+                shape = self._random_shape(label, shape)
             behavior = _item(row.get("behavior"), k, dict) or row.get("group_behavior") or {}
             behavior = behavior if isinstance(behavior, dict) else {"name": behavior}
             if role == "robot":
@@ -119,10 +165,10 @@ class _Reader:
     def _places(self, label: str, row: dict[Any, Any], number: int) -> list[tuple[tuple[float, ...], list[Spot]]]:
         """States and goals of the objects of an entry; none if they are random."""
         how = row.get("distribution") or {}
-        kind = str(how.get("name", "manual") if isinstance(how, dict) else how)
-        if kind == "random" and (number > 1 or "state" not in row):
-            self.scene.note(f"{label} is placed at random ({number} objects) and is left out: place them")
-            return []
+        kind = _distribution(row)
+        if _is_random(row, number):
+            self.scene.note(f"{label}: IR-SIM draws its {number} places in each run, here they are drawn once")
+            return [self._random_place(label, row, k, how if isinstance(how, dict) else {}) for k in range(number)]
         if kind == "circle":
             width, height = (number_in(self.world, key, "world", 10.0) for key in ("width", "height"))
             low = self.world.get("offset") or [0.0, 0.0]
@@ -142,6 +188,59 @@ class _Reader:
             rows = [] if goal is None else goal if _depth(goal) == 2 else [goal]
             placed.append((place, [(_at(spot, 0, f"{label}: goal"), _at(spot, 1, f"{label}: goal")) for spot in rows]))
         return placed
+
+    def _random_place(
+        self, label: str, row: dict[Any, Any], k: int, how: dict[Any, Any]
+    ) -> tuple[tuple[float, ...], list[Spot]]:
+        """A place apart from those drawn before, and a goal, in the range of a distribution."""
+        low, high = (
+            [_at(how.get(key) or list(RANGE[side]), axis, f"{label}: {key}", RANGE[side][axis]) for axis in range(3)]
+            for side, key in enumerate(("range_low", "range_high"))
+        )
+        if any(a > b for a, b in zip(low, high, strict=True)):
+            raise self.scene.error(f"{label}: range_low must not be above range_high")
+        shape = _item(row.get("shape"), k, dict) or {}
+        reach = _reach(shape if isinstance(shape, dict) else {})
+        x, y, turn = self._draw(low, high, reach, f"{label}: object {k + 1}")
+        rows = row.get("goal")
+        if rows is not None:
+            goal = _item(rows, k, float) if _depth(rows) == 2 else rows
+            return (x, y, turn), [(_at(goal, 0, f"{label}: goal"), _at(goal, 1, f"{label}: goal"))]
+        moves = row.get("kinematics") is not None and not row.get("static")
+        return (x, y, turn), [self._draw(low, high, reach, f"{label}: goal {k + 1}")[:2]] if moves else []
+
+    def _draw(self, low: list[float], high: list[float], reach: float, what: str) -> tuple[float, float, float]:
+        """A place in a range that is clear of solids and of what is drawn before, and a heading."""
+        import shapely
+
+        for _ in range(MOST_DRAWS):
+            x, y, turn = (float(value) for value in np.round(self.rng.uniform(np.array(low), np.array(high)), 6))
+            clear = all(math.hypot(x - u, y - v) > reach + other for u, v, other in self.drawn)
+            if clear and not shapely.distance(self.solids, shapely.Point(x, y)) <= reach:  # NaN without solids
+                break
+        else:
+            self.scene.note(f"{what}: there is no room in its range, it may overlap others")
+        self.drawn.append((x, y, reach))
+        return x, y, turn
+
+    def _random_shape(self, label: str, shape: dict[Any, Any]) -> dict[Any, Any]:
+        """A shape with the sizes that IR-SIM draws in each run."""
+        self.scene.note(f"{label} has random shapes in IR-SIM, here they are drawn once")
+
+        def draw(key: str, low: float, high: float) -> float:
+            given = shape.get(key) or [low, high]
+            ends = sorted((_at(given, 0, f"{label}: {key}"), _at(given, 1, f"{label}: {key}")))
+            return round(float(self.rng.uniform(ends[0], ends[1])), 6)
+
+        kind = str(shape.get("name", "circle"))
+        if kind == "circle":
+            return {"name": kind, "radius": draw("radius_range", 0.1, 1.0)}
+        if kind == "rectangle":
+            return {"name": kind, "length": draw("length_range", 0.1, 1.0), "width": draw("width_range", 0.1, 1.0)}
+        radius, count = draw("avg_radius_range", 0.1, 0.5), draw("num_vertices_range", 4.0, 10.0)
+        spots = circle(0.0, 0.0, radius)
+        corners = np.linspace(0, len(spots), min(len(spots), max(3, round(count))), endpoint=False).astype(int)
+        return {"name": "polygon", "vertices": [list(spots[corner]) for corner in corners]}
 
     def _name(self, label: str, row: dict[Any, Any], k: int, number: int) -> str:
         name = _item(row.get("name"), k, str)
@@ -232,11 +331,8 @@ class _Reader:
         return max(math.hypot(x, y) for x, y in spots)
 
     def _corners(self, name: str, shape: dict[Any, Any]) -> list[Spot]:
-        """Corners of a shape in its own frame; none if it is random or unknown."""
+        """Corners of a shape in its own frame; none if it is unknown."""
         kind = str(shape.get("name", "circle"))
-        if shape.get("random_shape") or shape.get("is_convex"):
-            self.scene.note(f"{name} has a random shape and is left out")
-            return []
         if kind == "circle":
             center = shape.get("center") or [0.0, 0.0]
             radius = number_in(shape, "radius", name, 0.2)
@@ -259,6 +355,28 @@ class _Reader:
             self.scene.wall(spots, name)
         else:
             self.scene.obstacle(spots, name)
+
+
+def _reach(shape: dict[Any, Any]) -> float:
+    """Largest distance [m] of a shape from its place, also of one whose sizes are drawn later."""
+    sizes = [shape.get(key) for key in ("radius", "length", "width")]
+    if shape.get("random_shape"):
+        ranges = [value for key, value in shape.items() if str(key).endswith(("radius_range", "th_range"))]
+        sizes += [1.0, *(size for value in ranges if isinstance(value, list) for size in value)]
+    rows = shape.get("vertices")
+    corners = [row for row in rows if isinstance(row, list)] if isinstance(rows, list) else []
+    sizes += [2.0 * value for row in corners for value in row if isinstance(value, int | float)]
+    return max([0.3, *(abs(float(size)) for size in sizes if isinstance(size, int | float) and abs(size) < 1e3)])
+
+
+def _distribution(row: dict[Any, Any]) -> str:
+    how = row.get("distribution") or {}
+    return str(how.get("name", "manual") if isinstance(how, dict) else how)
+
+
+def _is_random(row: dict[Any, Any], number: int) -> bool:
+    """Whether the places of an entry are random."""
+    return _distribution(row) == "random" and (number > 1 or "state" not in row)
 
 
 def _depth(value: Any) -> int:
