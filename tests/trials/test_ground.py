@@ -174,31 +174,6 @@ GREY = np.array([[{"#": 0, ".": 254, "?": 205}[mark] for mark in row] for row in
 
 
 @pytest.mark.parametrize(
-    "text",
-    [
-        YAML,
-        "\ufeff" + YAML,
-        YAML.replace("\n", "\r\n"),
-        YAML.replace("[-1.0, -0.5, 0.0]", "\n- -1.0\n- -0.5\n- 0.0"),
-        YAML.replace("[-1.0, -0.5, 0.0]", "[-1.0,\n  -0.5,\n  0.0]"),
-        YAML.replace("[-1.0, -0.5, 0.0]", "[-1, -5e-1, 0]  # of the lower left corner"),
-        YAML.replace("image: map.pgm", "image: 'map.pgm'").replace("negate: 0", "negate: false"),
-        "---\n# a map\n" + YAML + "mode: trinary\n",
-        json.dumps({"image": "map.pgm", "resolution": 0.1, "origin": [-1.0, -0.5, 0.0], "negate": 0}),
-        "resolution: &size 0.1\nimage: map.pgm\norigin: {0: -1.0}\n".replace("{0: -1.0}", "[-1.0, -0.5, 0.0]"),
-    ],
-)
-def test_a_map_is_any_form_of_yaml(tmp_path: Path, text: str) -> None:
-    written(tmp_path, pgm(ROOM), "map.pgm")
-    written(tmp_path, YAML, "plain.yaml")
-    written(tmp_path, text.encode(), "map.yaml")
-    plain, same = (Stage(map=name, folder=tmp_path).rings for name in ("plain.yaml", "map.yaml"))
-    assert len(plain) == len(same) == 2
-    for ring, other in zip(plain, same, strict=True):
-        np.testing.assert_array_equal(ring, other)
-
-
-@pytest.mark.parametrize(
     ("image", "kind", "cells"),
     [
         ("map.png", "L", GREY),
