@@ -15,6 +15,7 @@ BUILTIN = builtin_classes(navigation, navigation.Navigator)
 OTHERS = (
     navigation.ExternalNavigator,
     navigation.FollowerNavigator,
+    navigation.MPPINavigator,
     navigation.PredictedOccupancyNavigator,
     navigation.ProcessNavigator,
     navigation.RealRobotNavigator,
@@ -40,6 +41,7 @@ def test_the_room_shows_its_contracts():
     names = {"dynamic-window", "external", "mpc", "orca", "potential-field", "rds", "social-force", "straight"}
     names |= {
         "follower",
+        "mppi",
         "policy",
         "predicted-occupancy",
         "process",

@@ -19,6 +19,7 @@ from .planners.driving_support import RDSNavigator
 from .planners.elastic_band import TimeElasticBandNavigator
 from .planners.learned_policy import PolicyInputs, PolicyNavigator, policy_inputs
 from .planners.model_predictive import MPCNavigator
+from .planners.path_integral import MPPINavigator
 from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
 from .planners.policy_weights import LAYERS, PolicyWeights, policy_file
 from .planners.potential_field import PotentialFieldNavigator
@@ -47,6 +48,7 @@ __all__ = [
     "FollowerNavigator",
     "HungNavigatorError",
     "MPCNavigator",
+    "MPPINavigator",
     "Navigator",
     "ORCANavigator",
     "Observation",
