@@ -32,7 +32,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from crowdbot.recording import record
 from crowdbot.trials import load_trial
 from crowdbot.web import StateFrame
-from crowdbot.web.simulator.kernel_preparation import PROGRAM
+from crowdbot.web.simulator.kernel_preparation import PROGRAMS
 from page_cost import measure
 
 FLAGS = ["--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -159,12 +159,14 @@ def cold_start(browser: Browser, folder: Path) -> list[Time]:
 
 
 def compilation(browser: Browser, folder: Path) -> list[Time]:
-    """Return the processor time until the first trial is compiled, by the process of the server that does it."""
+    """Return the processor time until the first trial is compiled, by the processes of the server that do it."""
     folder.mkdir(parents=True)
     environment = dict(os.environ) | {"CROWDBOT_CACHE": str(folder)}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    with subprocess.Popen([sys.executable, "-c", PROGRAM], stdin=subprocess.PIPE, env=environment) as process:
-        if process.wait():
+    with contextlib.ExitStack() as stack:
+        commands = [[sys.executable, "-c", program] for program in PROGRAMS]
+        processes = [subprocess.Popen(command, stdin=subprocess.PIPE, env=environment) for command in commands]
+        if any(stack.enter_context(process).wait() for process in processes):
             raise RuntimeError("the kernels of the first trial were not compiled")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

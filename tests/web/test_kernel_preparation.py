@@ -1,4 +1,4 @@
-"""Kernels of the first trial are compiled by another process, which never outlives the server."""
+"""Kernels of the first trial are compiled by other processes, which never outlive the server."""
 
 import subprocess
 import sys
@@ -8,7 +8,7 @@ import pytest
 
 from crowdbot.core import cache_folder
 from crowdbot.web.simulator import kernel_preparation
-from crowdbot.web.simulator.kernel_preparation import MARK, PROGRAM, prepare_kernels
+from crowdbot.web.simulator.kernel_preparation import MARK, PROGRAMS, prepare_kernels
 
 pytestmark = pytest.mark.live
 
@@ -37,39 +37,47 @@ def test_the_kernels_of_the_first_trial_are_in_the_cache_afterwards():
     assert told == ["compiling"]
 
 
+def test_each_program_ends_well():
+    for program in PROGRAMS:
+        with subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.PIPE) as process:
+            assert process.wait(600) == 0
+
+
 def test_sessions_that_start_together_compile_once(cold, monkeypatch):
     folder, started = cold
     program = f"import pathlib, time; time.sleep(1); pathlib.Path({str(folder / MARK)!r}).touch()"
-    monkeypatch.setattr(kernel_preparation, "PROGRAM", program)
+    monkeypatch.setattr(kernel_preparation, "PROGRAMS", (program, program))
     threads = [threading.Thread(target=prepare_kernels, args=(lambda: False, lambda: None)) for _ in range(5)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join(60)
     assert (folder / MARK).is_file()
-    assert len(started) == 1
+    assert len(started) == 2
 
 
 def test_a_process_that_fails_is_not_repeated(cold, monkeypatch):
     _, started = cold
-    monkeypatch.setattr(kernel_preparation, "PROGRAM", "raise SystemExit(3)")
+    wait = "import sys; sys.stdin.read()"
+    monkeypatch.setattr(kernel_preparation, "PROGRAMS", ("raise SystemExit(3)", wait))
     prepare_kernels(lambda: False, lambda: None)
-    assert [item.returncode for item in started] == [3]
+    assert started[0].returncode == 3
+    assert [item.poll() is None for item in started] == [False, False]
 
 
 def test_closing_ends_the_process_and_the_wait_for_another(cold, monkeypatch):
     _, started = cold
-    monkeypatch.setattr(kernel_preparation, "PROGRAM", "import sys; sys.stdin.read()")
+    wait = "import sys; sys.stdin.read()"
+    monkeypatch.setattr(kernel_preparation, "PROGRAMS", (wait, wait))
     prepare_kernels(lambda: bool(started), lambda: None)
-    assert len(started) == 1
-    assert started[0].returncode not in (None, 0)
+    assert [item.returncode in (None, 0) for item in started] == [False, False]
     with kernel_preparation._ONE:
         prepare_kernels(lambda: True, lambda: None)
-    assert len(started) == 1
+    assert len(started) == 2
 
 
 def test_the_process_ends_with_a_server_that_is_killed():
-    words = PROGRAM.replace("compile_kernels()", "_end_with_parent()").replace("compile_kernels", "_end_with_parent")
+    words = PROGRAMS[0].replace("compile_run", "_end_with_parent") + "; import time; time.sleep(600)"
     with subprocess.Popen([sys.executable, "-c", words], stdin=subprocess.PIPE) as process:
         assert process.poll() is None
         process.stdin.close()  # as the system does
