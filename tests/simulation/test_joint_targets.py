@@ -15,7 +15,7 @@ from crowdbot.navigation import Action, Navigator, Observation, check_navigator
 from crowdbot.recording import branch, open_run, read_episode, replay
 from crowdbot.simulation import Simulation, SimulationRun
 from crowdbot.trials import Trial, joint_positions, load_trial, parse_trial, trial_xml
-from crowdbot.trials.robots.joint_target import JointTarget
+from crowdbot.trials.robot import JointTarget
 from crowdbot.world import free_joints
 
 WORLDS = ("planar", "physics")

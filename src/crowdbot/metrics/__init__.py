@@ -6,17 +6,14 @@ from .contact_tracker import ContactTracker
 from .contacts import HOLD, ContactEvent, cause_of, contact_events
 from .coverage import ellipse_coverage
 from .displacement import ade, best_of, distances, fde, miss_rate
-from .earth_mover import earth_mover_distance
 from .energy import energy_score
 from .impacts import IMPACT_METRICS, Impact, impact_metrics
 from .incremental import CONTACT_METRICS, NavigationMetrics, NavigationOutcome
 from .interval import Intervals, bootstrap_interval, corrected_interval, draw_counts, percentile_interval
-from .likelihood import kde_nll
-from .mahalanobis import mahalanobis
-from .modes import mode_count, mode_coverage, mode_shares
+from .likelihood import kde_nll, mahalanobis
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, navigation_metrics, outcome
-from .nearest_neighbor import nearest_neighbor_accuracy
+from .nearest_neighbor import earth_mover_distance, mode_count, mode_coverage, mode_shares, nearest_neighbor_accuracy
 from .outline_clearance import outline_clearance
 from .people_rows import PEOPLE_COLUMNS, PersonImpact, TableRobot, people_table
 from .persons import PersonErrors, error_over_horizon, person_errors

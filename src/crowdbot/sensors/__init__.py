@@ -17,9 +17,8 @@ from .rgb_camera import RENDERERS, SAMPLE_COUNTS, RGBCamera, RgbImage, check_ren
 from .sensor import Reading, Sensor, SensorSchedule, join_readings, planar_pose, spatial_pose
 from .skin_scans import triangles_one_by_one
 from .state_rows import StateGroups, measure_rows, put_state_rows, take_state_rows
-from .view import SensorView
+from .view import SensorView, WheelGeometry, WheelRotation
 from .wheel_odometry import Odometry, OdometryState, WheelOdometry, arc_between
-from .wheel_rotation import WheelGeometry, WheelRotation
 
 __all__ = [
     "FLOOR",

@@ -15,8 +15,7 @@ from crowdbot.typing import Floats
 from .imu import elapsed_time
 from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose
-from .view import SensorView
-from .wheel_rotation import WheelGeometry, WheelRotation
+from .view import SensorView, WheelGeometry, WheelRotation
 
 
 def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:

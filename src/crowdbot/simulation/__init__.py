@@ -1,28 +1,25 @@
 """Simulation of a trial with a seed; the result is an episode."""
 
 from crowdbot.core import StateError, StateMark
+from crowdbot.simulation.episode_digest import ResumableHash
 
 from .decision_timer import decision_times
-from .door_orders import DoorOrder
 from .episode import Episode, ScanRow, log_of, scan_row, tracks_of
 from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
 from .external_robots import OwnSource, UncommandedRobotWarning, open_own_sources
 from .failure import RunEnd, RunFailure, RunFailureWarning
-from .faults.fault_order import FaultOrder
-from .orders.avatar_order import AvatarOrder
+from .faults.fault_state import FaultOrder
+from .orders.avatar_order import AvatarOrder, RobotPoseOrder
 from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
-from .orders.element_orders import AddElementOrder, RemoveElementOrder
+from .orders.element_orders import AddElementOrder, ParameterOrder, RemoveElementOrder, TrialOrder
 from .orders.goal_order import GoalOrder
 from .orders.joint_order import JointOrder
 from .orders.order import Order, VelocityOrder, order_kinds, read_order, write_order
 from .orders.order_schedule import OrderSchedule
-from .orders.parameter_order import ParameterOrder
 from .orders.people_orders import AddPersonOrder, MoveOrder, RedirectOrder, RemoveOrder
 from .orders.push_order import PushOrder
-from .orders.robot_pose_order import RobotPoseOrder
-from .orders.trial_order import TrialOrder
-from .overrides import apply_overrides
+from .overrides import DoorOrder, apply_overrides
 from .robot_control import RobotControl
 from .runner import catch_interrupt, run_to_end, simulate, simulate_seeds, simulate_variants, warn_of_failure
 from .simulation import Simulation
@@ -35,7 +32,6 @@ from .simulation_run import (
     Sink,
     StopRequest,
 )
-from .state.resumable_hash import ResumableHash
 from .state.simulation_state import restore_state, state_of
 from .state.state_codec import decode_state, encode_state
 from .statistics import EpisodeStatistics, RunSummary, robot_metrics

@@ -1,25 +1,79 @@
-"""Overrides: continue a running simulation with changed values of its trial."""
+"""Overrides: continue a running simulation with changed values of its trial, and orders to doors."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, did_you_mean
 from crowdbot.models import Mixture
-from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names, own
-from crowdbot.world import environment_seeds
+from crowdbot.trials import Crowds, Door, RobotSpec, Trial, crowd_names, own
+from crowdbot.world import environment_seeds, worlds_of
 
-from .door_orders import check_doors, order_doors
 from .faults.fault_state import FaultState
 from .mounted_sensor import mounted_sensors
+from .orders.order import Order
 from .robot_control import RobotControl, decision_schedule
 from .robot_joints import restore_joints
 from .simulation import NONE, SUCCESS, Simulation
 from .world_builder import limits_of, own_walls
+
+
+@dataclass(frozen=True, kw_only=True)
+class DoorOrder(Order):
+    """Open or close a door in one environment. The door needs ``opening="order"``.
+
+    Fields:
+        door: name of the door.
+        open: whether it is to be open.
+
+    >>> DoorOrder(door="hall", environment=3).open
+    True
+    """
+
+    door: str
+    open: bool = True
+
+    def check(self, simulation: Any) -> None:
+        """Raise :class:`InputError` if there is no such door, or it does not open by order."""
+        super().check(simulation)
+        doors = {door.name: door for door in simulation.trial.stage.doors}
+        if self.door not in doors:
+            hint = did_you_mean(self.door, doors)
+            raise InputError(f"DoorOrder: there is no door {self.door!r}{hint}; doors are {', '.join(doors) or 'none'}")
+        if (opening := doors[self.door].opening) != "order":
+            raise InputError(f'DoorOrder: door {self.door!r} opens by {opening}; take opening="order"')
+
+    def apply(self, simulation: Any) -> None:
+        """Let the door begin to open or close."""
+        doors = worlds_of(simulation.world)[self.environment].doors
+        doors.wanted = {**doors.wanted, self.door: bool(self.open)}
+
+
+def check_doors(old: Sequence[Door], new: Sequence[Door]) -> None:
+    """Raise :class:`InputError` if something else changes than whether a door is open."""
+    same = len(old) == len(new) and all(
+        dataclasses.replace(two, open=item.open) == item for item, two in zip(old, new, strict=True)
+    )
+    if not same:
+        raise InputError("of the doors, only open can change while a simulation runs")
+    for item, two in zip(old, new, strict=True):
+        if item.open != two.open and item.opening != "order":
+            raise InputError(
+                f'open of door {item.name!r} cannot change: it opens by {item.opening}; take opening="order"'
+            )
+
+
+def order_doors(world: Any, old: Sequence[Door], new: Sequence[Door]) -> None:
+    """Open and close the doors whose value in the trial changes."""
+    changed = {two.name: two.open for item, two in zip(old, new, strict=True) if item.open != two.open}
+    for part in worlds_of(world) if changed else ():
+        part.doors.wanted = {**part.doors.wanted, **changed}
+
 
 FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "avatars", "journeys")
 """Values of a trial that cannot change during a run."""

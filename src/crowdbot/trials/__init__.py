@@ -10,6 +10,12 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
+    from crowdbot.trials.robot import JointTarget as JointTarget
+    from crowdbot.trials.robot import joint_positions as joint_positions
+    from crowdbot.trials.variants import add_element as add_element
+    from crowdbot.trials.variants import needs_trust as needs_trust
+    from crowdbot.trials.variants import remove_element as remove_element
+
     from .agent import Agent as Agent
     from .agent import AgentParameter as AgentParameter
     from .agent import Avatar as Avatar
@@ -30,16 +36,16 @@ if TYPE_CHECKING:
     from .crowd import Routing as Routing
     from .crowd import crowd_names as crowd_names
     from .distribution import Distribution as Distribution
-    from .faults.builtin_faults import BlindSensor as BlindSensor
-    from .faults.builtin_faults import FrozenSensor as FrozenSensor
-    from .faults.builtin_faults import LateSensor as LateSensor
-    from .faults.builtin_faults import LocalizationJump as LocalizationJump
-    from .faults.builtin_faults import LocalizationOffset as LocalizationOffset
-    from .faults.builtin_faults import LostCommands as LostCommands
-    from .faults.builtin_faults import SlippingWheel as SlippingWheel
+    from .faults.fault import BlindSensor as BlindSensor
     from .faults.fault import Fault as Fault
     from .faults.fault import FaultSpec as FaultSpec
+    from .faults.fault import FrozenSensor as FrozenSensor
+    from .faults.fault import LateSensor as LateSensor
+    from .faults.fault import LocalizationJump as LocalizationJump
+    from .faults.fault import LocalizationOffset as LocalizationOffset
+    from .faults.fault import LostCommands as LostCommands
     from .faults.fault import SensorFault as SensorFault
+    from .faults.fault import SlippingWheel as SlippingWheel
     from .faults.fault import have_same_kinds as have_same_kinds
     from .fields import UNWRITABLE as UNWRITABLE
     from .fields import attribute as attribute
@@ -70,10 +76,10 @@ if TYPE_CHECKING:
     from .importers.foreign import import_trial as import_trial
     from .importers.hunavsim import import_hunavsim as import_hunavsim
     from .importers.original import ImportedTrial as ImportedTrial
+    from .importers.original import Plan as Plan
     from .importers.original import import_original as import_original
     from .importers.original import plan_of as plan_of
     from .importers.original import trials_of as trials_of
-    from .importers.original_order import Plan as Plan
     from .importers.pedsim import import_pedsim as import_pedsim
     from .importers.recording import recorded_trial as recorded_trial
     from .importers.umans import import_umans as import_umans
@@ -112,8 +118,6 @@ if TYPE_CHECKING:
     from .robot import Planner as Planner
     from .robot import RobotGoal as RobotGoal
     from .robot import RobotSpec as RobotSpec
-    from .robots.joint_target import JointTarget as JointTarget
-    from .robots.joint_target import joint_positions as joint_positions
     from .robots.passage import blind_remarks as blind_remarks
     from .robots.passage import narrow_passage as narrow_passage
     from .robots.passage import passage_remarks as passage_remarks
@@ -138,16 +142,13 @@ if TYPE_CHECKING:
     from .trial import EndCondition as EndCondition
     from .trial import RecordingSpec as RecordingSpec
     from .trial import Trial as Trial
-    from .validation.model_ranges import MODEL_RANGES as MODEL_RANGES
-    from .validation.model_ranges import ModelRange as ModelRange
-    from .validation.model_ranges import model_range as model_range
+    from .validation.rates import MODEL_RANGES as MODEL_RANGES
+    from .validation.rates import ModelRange as ModelRange
+    from .validation.rates import model_range as model_range
     from .validation.rates import trial_remarks as trial_remarks
     from .validation.trial_checks import robot_place_problem as robot_place_problem
     from .variants import apply_values as apply_values
     from .variants import expand_sweeps as expand_sweeps
-    from .xml.element_edit import add_element as add_element
-    from .xml.element_edit import needs_trust as needs_trust
-    from .xml.element_edit import remove_element as remove_element
     from .xml.reader import XmlReader as XmlReader
     from .xml.trial_text import parse_trial_xml as parse_trial_xml
     from .xml.trial_text import read_trial_bytes as read_trial_bytes

@@ -15,8 +15,7 @@ from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
 from .validation.trial_checks import problems_of
-from .xml.reader import ROOT, XmlReader
-from .xml.reader_result import ReaderResult
+from .xml.reader import ROOT, ReaderResult, XmlReader
 from .xml.trial_text import parse_trial_xml
 from .xml.writer import element_of
 

@@ -19,7 +19,7 @@ from crowdbot.navigation import (
 from crowdbot.recording import branch, record, replay
 from crowdbot.simulation import simulate, simulate_seeds
 from crowdbot.trials import RobotGoal, RobotSpec, load_trial, parse_trial, trial_xml
-from crowdbot.trials.robots.safety import SafetySpec
+from crowdbot.trials.robot import SafetySpec
 from crowdbot.world import DifferentialDrive
 
 LAYER = SafetyLayer(approach=1.6, response=0.1, intrusion=0.1, deceleration=1.0, restart=1.0)

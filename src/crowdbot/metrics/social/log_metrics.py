@@ -6,15 +6,11 @@ from collections.abc import Callable, Iterable
 
 from crowdbot.core import InputError, did_you_mean
 
-from .comfort import comfort_metrics
-from .conflict import conflict_metrics
+from .comfort import comfort_metrics, conflict_metrics, force_metrics
 from .group_intrusion import group_metrics
-from .legibility import legibility_metrics
-from .motion_quality import motion_metrics
-from .path_quality import path_metrics
+from .path_quality import legibility_metrics, motion_metrics, path_metrics
 from .robot_log import RobotLog
 from .severity import severity_metrics
-from .social_force import force_metrics
 from .surroundings import density_metrics, person_metrics
 from .task import task_metrics
 

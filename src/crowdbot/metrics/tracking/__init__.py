@@ -1,15 +1,28 @@
 """Scores of tracks against true people: CLEAR MOT, IDF1, HOTA, OSPA, GOSPA and latency."""
 
-from .clear_mot import ClearMot, clear_mot
-from .hota import Hota, hota
-from .identity_f1 import identity_f1
-from .latency import track_latency
-from .occlusions import OcclusionCount, count_occlusions
-from .occupancy import OccupancyGrid, occupancy_iou, range_error, structural_similarity, weighted_squared_error
-from .ospa import gospa, ospa
-from .scan_collision import scan_time_to_collision
+from .occupancy import (
+    OccupancyGrid,
+    occupancy_iou,
+    range_error,
+    scan_time_to_collision,
+    structural_similarity,
+    weighted_squared_error,
+)
 from .track_comparison import TrackComparison, match_nearest
-from .tracking_scores import TRACKING_SCORES, tracking_scores
+from .tracking_scores import (
+    TRACKING_SCORES,
+    ClearMot,
+    Hota,
+    OcclusionCount,
+    clear_mot,
+    count_occlusions,
+    gospa,
+    hota,
+    identity_f1,
+    ospa,
+    track_latency,
+    tracking_scores,
+)
 
 __all__ = [
     "TRACKING_SCORES",

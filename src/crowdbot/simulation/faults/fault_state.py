@@ -1,4 +1,4 @@
-"""FaultState: the faults of one robot in all environments of a simulation."""
+"""FaultState: the faults of one robot in all environments, and the events of their begin and end."""
 
 from __future__ import annotations
 
@@ -9,14 +9,39 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import RandomStreams, Storage, kebab_case, stream
+from crowdbot.core import InputError, RandomStreams, Storage, kebab_case, stream
 from crowdbot.navigation import ObservationBatch
 from crowdbot.simulation.mounted_sensor import MountedSensor
+from crowdbot.simulation.orders.decision_orders import DecisionOrder
+from crowdbot.simulation.orders.order import OrderTarget
 from crowdbot.trials import BlindSensor, Fault, FrozenSensor, LateSensor, RobotSpec, SensorFault
 from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import World
 
-from .fault_order import FaultOrder
+
+@dataclass(frozen=True, kw_only=True)
+class FaultOrder(DecisionOrder):
+    """Record that a fault begins or ends; the trial says when, so a replay does not need it.
+
+    Fields:
+        fault: name of the fault, or its kind and number, such as ``frozen-sensor 1``.
+        state: ``begin`` or ``end``.
+
+    >>> from crowdbot.simulation import write_order
+    >>> write_order(FaultOrder(robot="pepper", fault="lost-commands 1", state="begin"))
+    '{"order": "fault", "robot": "pepper", "fault": "lost-commands 1", "state": "begin"}'
+    """
+
+    fault: str
+    state: str
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError`: nobody can give such an order."""
+        raise InputError("a fault order is written by a run and cannot be given to one; write a <fault> in the trial")
+
+    def apply(self, simulation: OrderTarget) -> None:
+        """Do nothing: the fault acts by itself."""
+
 
 COLUMNS = 8
 """Largest number of numbers of a fault."""

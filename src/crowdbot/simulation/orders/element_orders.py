@@ -1,15 +1,56 @@
-"""Orders that add elements to the trial of a running simulation, and remove them: robots, props, walls, exits."""
+"""Orders that change the trial of a running simulation: its values, and elements such as robots, props and exits."""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.simulation.mounted_sensor import needs_bodies
-from crowdbot.trials import Trial, add_element, needs_trust, remove_element
+from crowdbot.simulation.overrides import apply_overrides, check_overrides
+from crowdbot.trials import Trial, add_element, apply_values, needs_trust, remove_element
 
-from .trial_order import TrialOrder
+from .order import Order, OrderTarget
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrialOrder(Order):
+    """Base of orders that change the trial; E = 1, since a trial belongs to all environments."""
+
+    @abstractmethod
+    def new_trial(self, simulation: Any) -> Trial:
+        """Return the changed trial."""
+
+    def check(self, simulation: OrderTarget) -> None:
+        """Raise :class:`InputError` if the trial cannot change in this way while it runs."""
+        super().check(simulation)
+        if simulation.count > 1:
+            name = type(self).__name__
+            raise InputError(f"{name}: a trial belongs to all environments; use a simulation of one environment")
+        check_overrides(simulation, self.new_trial(simulation), added=True)
+
+    def apply(self, simulation: Any) -> None:
+        """Change the trial."""
+        apply_overrides(simulation, self.new_trial(simulation))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterOrder(TrialOrder):
+    """Change a value of the trial, such as ``crowd.neighbor-distance`` or ``robot.goal.x``; E = 1.
+
+    Fields:
+        path: path of the value, see :class:`crowdbot.trials.Sweep`.
+        value: the new value as text.
+    """
+
+    path: str
+    value: str
+
+    def new_trial(self, simulation: Any) -> Trial:
+        """Return the trial with the new value."""
+        trial: Trial = simulation.trial
+        return apply_values(trial, {self.path: self.value}, place=f"order parameter of trial {trial.name!r}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
-from .camera import Camera
-from .floor_view import floor_points, hidden_floor
+from .camera import Camera, floor_points, hidden_floor
 
 IN_WALL = 0.02
 """A camera nearer to a wall [m] is in it; walls without an area are as thick."""

@@ -20,7 +20,7 @@ from crowdbot.models import ORCA
 from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
-from crowdbot.trials.validation.stage_size import LARGEST_EXTENT, SMALLEST_EXTENT, size_text
+from crowdbot.trials.validation.rates import LARGEST_EXTENT, SMALLEST_EXTENT, size_text
 
 from .original import ImportedTrial
 

@@ -6,14 +6,21 @@ keeps x, changes the sign of y, and converts headings to radians, counter-clockw
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from typing import Any
 
-from crowdbot.core import Element, InputError, TrialError, parse_number
-from crowdbot.trials.agent import Agent
+from crowdbot import models
+from crowdbot.core import Element, InputError, TrialError, parameters, parse_number
+from crowdbot.models import CrowdModel
+from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.crowd import Crowds, Routing
+from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.journey import Direction, Journey, Point
 from crowdbot.trials.notation import Points
 from crowdbot.trials.robot import RobotGoal, RobotSpec
@@ -21,8 +28,280 @@ from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import End, EndCondition, Trial
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
-from .original_crowd import Walker, crowds_of
-from .original_order import DEFAULT, Plan
+KINDS: dict[str, tuple[type[CrowdModel], dict[str, str]]] = {
+    "RVOconfig": (
+        models.ORCA,
+        {
+            "neighborDist": "neighbor_distance",
+            "maxNeighbors": "max_neighbors",
+            "timeHorizon": "time_horizon",
+            "timeHorizonObst": "time_horizon_walls",
+        },
+    ),
+    "VOGConfig": (
+        models.VOG,
+        {
+            "neighborDist": "neighbor_distance",
+            "maxNeighbors": "max_neighbors",
+            "timeHorizon": "time_horizon",
+            "timeHorizonObst": "wall_horizon",
+            "weightPrefVel": "preference_weight",
+            "weightGroup": "group_weight",
+            "neighbourNum": "group_neighbors",
+            "neighbourDist": "group_radius",
+            "neighbourDetectionDist": "group_distance",
+            "horizonTime": "group_horizon",
+        },
+    ),
+    "VBMConfig": (
+        models.VBM,
+        {
+            "neighborAgentDist": "neighbor_distance",
+            "neighborWallDist": "wall_distance",
+            "sigTtca": "time_scale",
+            "sigDca": "distance_scale",
+            "sigSpeed": "speed_scale",
+            "sigAngle": "angle_scale",
+        },
+    ),
+    "HelbingConfig": (models.SocialForce, {"neighborDist": "neighbor_distance"}),
+    "TangentConfig": (
+        models.Tangent,
+        {
+            "personalArea": "personal_area",
+            "g_beta": "direction_error",
+            "g_gamma": "speed_error",
+            "timeHorizon": "time_horizon",
+            "maxNeighbors": "max_neighbors",
+        },
+    ),
+    "UMANSconfig": (models.ORCA, {}),
+}
+KINDS["RosSimConfig"] = KINDS["RVOconfig"]
+CLOSED = {
+    "HelbingConfig": "its binary is closed: the social force model replaces it",
+    "TangentConfig": "its binary is closed: the tangent model replaces it",
+    "UMANSconfig": "its policies are in another file: ORCA replaces it",
+}
+
+
+@dataclass(frozen=True)
+class Walker:
+    """An agent of an original trial: its element, control law, simulator and radius [m]."""
+
+    element: Element
+    law: Element
+    sim: Element | None
+    radius: float
+
+    @property
+    def kind(self) -> str:
+        """Type of its simulator."""
+        return self.sim.tag if self.sim is not None and self.sim.tag in KINDS else "RVOconfig"
+
+    @property
+    def crowd(self) -> str:
+        """Name of its crowd."""
+        return self.kind.removesuffix("onfig").removesuffix("C").removesuffix("c")
+
+    @property
+    def speed(self) -> float:
+        """Preferred speed [m/s], from the simulator if it has one, otherwise from the control law."""
+        return max(
+            0.05,
+            _value(self.sim, "prefered_speed")
+            or _value(self.sim, "speedComfort")
+            or _value(self.law, "speedDefault")
+            or 1.33,
+        )
+
+    @property
+    def group(self) -> int:
+        """Number of its group, -1 without a group."""
+        inner = [child for child in self.sim.children if child.tag == "group"] if self.sim else []
+        found = _value(inner[0], "groupID") if inner else _value(self.sim, "groupID")
+        return int(found) if found is not None and found >= 0.0 else -1
+
+    def parameters(self) -> dict[str, float]:
+        """Return the parameters of the model in the file."""
+        if self.sim is None:
+            return {}
+        model, words = KINDS[self.kind]
+        known = {row.name for row in parameters(model)}
+        places = (self.sim, *(child for child in self.sim.children if child.tag == "group"))
+        result = {}
+        for place in places:
+            for word, name in words.items():
+                value = _value(place, word)
+                if value is not None and name in known:
+                    result[name] = value
+        return result
+
+
+def crowds_of(walkers: Sequence[Walker], note: Callable[[str], None]) -> tuple[CrowdModel, list[dict[str, Any]]]:
+    """Return the crowd model of all agents, and the individual fields of each :class:`Agent`."""
+    kinds = list(dict.fromkeys(walker.kind for walker in walkers)) or ["RVOconfig"]
+    rows = [walker.parameters() for walker in walkers]
+    made: dict[str, CrowdModel] = {}
+    for kind in kinds:
+        if kind in CLOSED:
+            note(f"the simulator {kind}: {CLOSED[kind]}")
+        first = next((row for row, walker in zip(rows, walkers, strict=True) if walker.kind == kind), {})
+        made[kind] = _model(KINDS[kind][0], first, note)
+    for walker in walkers:
+        if walker.sim is not None and walker.sim.tag not in KINDS:
+            note(f"the simulator {walker.sim.tag}: ORCA replaces it")
+    own = []
+    for row, walker in zip(rows, walkers, strict=True):
+        model = made[walker.kind]
+        different = [
+            AgentParameter(name.replace("_", "-"), value)
+            for name, value in row.items()
+            if getattr(model, name) != value
+        ]
+        own.append({"parameters": tuple(different)} if different else {})
+    if len(kinds) == 1:
+        return made[kinds[0]], own
+    names = [Walker(Element(""), Element(""), Element(kind), 0.0).crowd for kind in kinds]
+    return Crowds(tuple(made.values()), names=tuple(names)), own
+
+
+def _model(kind: type[CrowdModel], values: dict[str, float], note: Callable[[str], None]) -> CrowdModel:
+    try:
+        return kind(**values)
+    except InputError as error:
+        note(f"parameters of {kind.__name__}: {error}")
+        return kind()
+
+
+def _value(element: Element | None, key: str) -> float | None:
+    if element is None:
+        return None
+    inner = next((child.stray for child in element.children if child.tag == key), "")
+    text = element.attributes.get(key, inner)
+    if not text:
+        return None
+    try:
+        value = parse_number(text.replace(",", "."))
+    except InputError as error:
+        raise TrialError(f"line {element.line}: <{element.tag[:40]}> {key}={text[:40]!r} {error}") from None
+    return min(max(value, -1e6), 1e6)
+
+
+MOST_LINES = 1000
+MOST_USERS = 100
+MOST_FILES = 100_000
+DEFAULT = "./Scenario/Test/FileOrder{USER}.csv"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The order of trials in a configuration or an order file.
+
+    Fields:
+        path: the configuration or order file.
+        folder: its folder; names in it are relative to this folder.
+        pattern: name of the order files; ``{USER}`` is the participant, ``{TWO}`` the participant modulo 2.
+        user: participant that the configuration names.
+        first: first line of the order, counted from 0.
+        notes: one sentence for everything that is not imported.
+        root: folder that is searched for files instead of ``folder``, None for none.
+    """
+
+    path: Path
+    folder: Path
+    pattern: str = DEFAULT
+    user: int = 0
+    first: int = 0
+    notes: tuple[str, ...] = ()
+    root: Path | None = None
+
+    def fill_in(self, name: str, user: int) -> str:
+        """Return a name with the number of a participant filled in."""
+        return name.replace("\\", "/").replace("{USER}", str(user)).replace("{TWO}", str(user % 2))
+
+    def entries(self, user: int) -> tuple[str, ...]:
+        """Return the names of the trials of a participant in their order.
+
+        Raises:
+            TrialError: the order file does not exist or is not text.
+        """
+        order = self.fill_in(self.pattern, user)
+        try:
+            file = self.find(order)
+            lines = [line.strip() for line in file.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
+        except (InputError, UnicodeDecodeError, OSError) as error:
+            raise TrialError(f"{self.path}: the order file {order[:80]!r} cannot be read: {error}") from None
+        chosen = lines[self.first : self.first + MOST_LINES]
+        return tuple(self.fill_in(line.split(";")[0].split(",")[0].strip(), user) for line in chosen)
+
+    def users(self) -> tuple[int, ...]:
+        """Return the participants, from 0, with an order file; without any, the one of the configuration."""
+        if "{USER}" not in self.pattern and "{TWO}" not in self.pattern:
+            return (self.user,)
+        most = MOST_USERS if "{USER}" in self.pattern else 2
+        return tuple(user for user in range(most) if self._is_there(user)) or (self.user,)
+
+    def find(self, name: str) -> Path:
+        """Return the path of a file named in a configuration or an order.
+
+        Names begin at the root of the simulator's project, such as ``./Assets/Scenario/a.xml``. Leading folders that
+        do not exist here are dropped. A file in ``folder`` comes first. With a ``root``, the file in it that shares
+        most of the end of the name is next; otherwise the three folders above ``folder`` are searched.
+
+        Raises:
+            InputError: the file does not exist, or two files match equally well.
+        """
+        with contextlib.suppress(InputError):
+            return resolve_file(name, self.folder, trust=False)
+        if self.root is not None:
+            return self._find_in_root(name, self.root)
+        for folder in (self.folder, *self.folder.resolve().parents[:3]):
+            for end in (name, *_ends(name)):
+                try:
+                    return resolve_file(end, folder, trust=False)
+                except InputError:
+                    continue
+        return resolve_file(name, self.folder, trust=False)
+
+    def _find_in_root(self, name: str, root: Path) -> Path:
+        for end in (name, *_ends(name)):
+            try:
+                return resolve_file(end, root, trust=False)
+            except InputError:
+                fits = [path for path in self._files.get(PurePosixPath(end).name, ()) if path.endswith(f"/{end}")]
+            if len(fits) > 1:
+                raise InputError(f"{len(fits)} files in {root} end with {end[:80]!r}: {', '.join(fits[:3])[:300]}")
+            if fits:
+                return resolve_file(fits[0].lstrip("/"), root, trust=False)
+        return resolve_file(name, root, trust=False)
+
+    @functools.cached_property
+    def _files(self) -> Mapping[str, tuple[str, ...]]:
+        """The files in ``root``, by name: each path begins with ``/``."""
+        found: dict[str, list[str]] = {}
+        if self.root is not None:
+            for path in itertools.islice(self.root.rglob("*"), MOST_FILES):
+                if path.is_file():
+                    found.setdefault(path.name, []).append(f"/{path.relative_to(self.root).as_posix()}")
+        return {name: tuple(sorted(paths)) for name, paths in found.items()}
+
+    def _is_there(self, user: int) -> bool:
+        try:
+            return self.find(self.fill_in(self.pattern, user)).is_file()
+        except InputError:
+            return False
+
+
+def _ends(name: str) -> list[str]:
+    """Return the ends of a path, the longest first.
+
+    >>> _ends("./Assets/Scenario/a.xml")
+    ['Assets/Scenario/a.xml', 'Scenario/a.xml', 'a.xml']
+    """
+    parts = [part for part in PurePosixPath(name).parts if part not in (".", "..", "/")][-20:]
+    return ["/".join(parts[k:]) for k in range(len(parts))]
+
 
 NEVER = 600.0
 """Duration [s] of a trial without an end."""

@@ -12,8 +12,7 @@ from crowdbot.trials.trial import Trial
 from crowdbot.typing import Floats
 from crowdbot.world import Ground
 
-from .context import Problems, ValidationContext
-from .flow_checks import duplicate_names
+from .flow_checks import Problems, ValidationContext, duplicate_names
 
 
 def ground_problems(checked: ValidationContext) -> Iterator[Problems]:

@@ -1,18 +1,193 @@
-"""Rates: sensors of robot types whose rates do not fit the time step of a trial."""
+"""Remarks on trials: rates of sensors that do not fit the time step, sizes of stages, ranges of crowd models."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
-from crowdbot.core import FreeClock, whole_ticks
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import FreeClock, kebab_case, whole_ticks
+from crowdbot.models import CrowdModel
 from crowdbot.trials.cameras.camera_remarks import camera_remarks
+from crowdbot.trials.crowd import Crowds
+from crowdbot.trials.randomized_model import RandomizedModel
 from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
 from .ground_checks import ground_remarks
-from .model_ranges import range_remarks
-from .stage_size import stage_size_remarks
+
+STEP_TOLERANCE = 1e-9
+FREE = "no fundamental diagram: its speed is within 10 % of Weidmann's curve up to 0.7 people/m2 only"
+SLOW = "a one-way crowd of 0.25 people/m2 walks at 0.7 m/s"
+JAMS = "two-way crowds jam or hardly move at higher densities"
+
+
+class ModelRange(NamedTuple):
+    """Range of a crowd model at its defaults.
+
+    Fields:
+        model: name of the model.
+        max_density: largest density [1/m2].
+        why: what happens beyond it.
+        max_step: largest time step of the crowd [s].
+        density_source, step_source: where the limits come from.
+    """
+
+    model: str
+    max_density: float
+    why: str
+    max_step: float
+    density_source: str
+    step_source: str
+
+
+PAGE = "crowdbot validate, corridor"
+TWO_WAY = "crowdbot validate, lanes and narrow two-way"
+JUPEDSIM = "JuPedSim 1.4.2, default time step"
+UMANS = "UMANS, time step of its examples"
+HEADWAY = "Walking speed and density in the documentation"
+SUBSTEPS = "the model divides longer steps into substeps of 0.01 s"
+MODEL_RANGES = (
+    ModelRange("anticipation-velocity", 0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM),
+    ModelRange("boids", 0.7, FREE, 0.1, PAGE, "CrowdBot simulator"),
+    ModelRange("collision-free-speed", 3.0, JAMS, 0.01, PAGE, JUPEDSIM),
+    ModelRange("collision-free-speed-v3", 0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM),
+    ModelRange("cost-model", 0.7, FREE, 0.1, PAGE, UMANS),
+    ModelRange("escape-panic", 0.7, FREE, 0.1, PAGE, SUBSTEPS),
+    ModelRange("generalized-centrifugal-force", 0.1, SLOW, 0.01, PAGE, JUPEDSIM),
+    ModelRange("group-force", 0.7, FREE, 0.1, PAGE, "PySocialForce tests"),
+    ModelRange("headed-social-force", 0.7, FREE, 0.02, PAGE, "contact forces of an explicit step"),
+    ModelRange("heuristics", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
+    ModelRange("orca", 0.7, FREE, 0.25, PAGE, "RVO2, time step of its examples"),
+    ModelRange("people", 2.0, "narrow two-way corridors are slower than in experiments", 0.05, HEADWAY, HEADWAY),
+    ModelRange("pledestrians", 0.7, FREE, 0.1, PAGE, UMANS),
+    ModelRange("power-law", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
+    ModelRange("social-force", 0.5, "lanes do not form and people are pushed through walls", 0.1, TWO_WAY, UMANS),
+    ModelRange("tangent", 0.5, JAMS, 0.1, TWO_WAY, "CrowdBot simulator"),
+    ModelRange("vbm", 0.25, JAMS, 0.1, TWO_WAY, "CrowdBot simulator"),
+    ModelRange("vog", 0.7, FREE, 0.1, PAGE, "CrowdBot simulator"),
+    ModelRange("warp-driver", 0.7, FREE, 0.01, PAGE, JUPEDSIM),
+)
+"""Ranges of the built-in models; a model that is missing has no known range."""
+
+
+def model_range(model: CrowdModel) -> ModelRange | None:
+    """Return the range of a model, None if it is not known.
+
+    >>> from crowdbot.models import CollisionFreeSpeed
+    >>> model_range(CollisionFreeSpeed()).max_step
+    0.01
+    """
+    if isinstance(model, RandomizedModel):
+        return model_range(model.model)
+    name = kebab_case(type(model).__name__)
+    here = type(model).__module__.startswith("crowdbot.models.")
+    return next((item for item in MODEL_RANGES if here and item.model == name), None)
+
+
+def range_remarks(trial: Trial) -> list[str]:
+    """Return a sentence for every limit of a crowd model that a trial exceeds.
+
+    The density is the number of people at the start over the walkable area; trials without walkable area have none.
+
+    >>> from crowdbot.models import CollisionFreeSpeed
+    >>> range_remarks(Trial(name="t", duration=1, crowd=CollisionFreeSpeed(), step=0.05, substeps=5))
+    []
+    """
+    models = trial.crowd.models if isinstance(trial.crowd, Crowds) else (trial.crowd,)
+    ranges = {item.model: item for item in map(model_range, models) if item is not None}
+    density, step = start_density(trial), trial.step / trial.substeps
+    result = []
+    for bounds in ranges.values():
+        if density > bounds.max_density:
+            result.append(
+                f"crowd model {bounds.model} is used at {density:.2g} people/m2, beyond its range of"
+                f" {bounds.max_density:g}: {bounds.why} ({bounds.density_source})"
+            )
+        if step > bounds.max_step + STEP_TOLERANCE:
+            result.append(
+                f"crowd model {bounds.model} is used with a time step of {step:g} s, beyond its range of"
+                f' {bounds.max_step:g} s ({bounds.step_source}); write substeps="{_substeps(trial, bounds)}"'
+            )
+    return result
+
+
+def start_density(trial: Trial) -> float:
+    """Return the people at the start per walkable area [1/m2], 0 if the stage has no walkable area."""
+    stage = trial.stage
+    if not stage.bounded:
+        return 0.0
+    ground = stage.shapes[1].area
+    return float((len(trial.agents) + sum(spawner.count for spawner in trial.spawners)) / ground)
+
+
+def _substeps(trial: Trial, one: ModelRange) -> int:
+    return next(n for n in range(1, 10_001) if trial.step / n <= one.max_step + STEP_TOLERANCE or n == 10_000)
+
+
+SMALLEST_EXTENT = 2.0
+LARGEST_EXTENT = 2000.0
+"""Plausible extents of a stage, the longer side of the box around it [m]."""
+
+SMALL = (
+    "coordinates are in metres, and these may be degrees or kilometres, or metres that were read as millimetres (for a"
+    " drawing, import it with --unit m)"
+)
+LARGE = "coordinates are in metres, and these may be millimetres, or pixels of an image"
+LARGE_MAP = "the resolution of its map is in metres per pixel"
+
+
+def stage_size_remarks(trial: Trial) -> list[str]:
+    """Return a sentence if the stage is implausibly small or large.
+
+    Without a walkable area, walls that are small may be obstacles on open ground: nothing is said if somebody starts
+    outside the box around them.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.trials import Stage
+    >>> small = Stage(walkable="0,0 0.02,0 0.02,0.008 0,0.008")
+    >>> stage_size_remarks(Trial(name="t", duration=1, crowd=ORCA(), stage=small))[0][:53]
+    'the walkable area is 0.02 m x 0.008 m, below 2 m in e'
+    """
+    stage = trial.stage
+    if stage.bounded:
+        what, bounds = "the walkable area", np.array(stage.shapes[1].bounds)
+    else:
+        rings = stage.rings[: len(stage.rings) - len(stage.props)]
+        if not rings:
+            return []
+        corners = np.concatenate(rings)
+        what, bounds = "the box around the walls", np.array([*corners.min(axis=0), *corners.max(axis=0)])
+    size = bounds[2:] - bounds[:2]
+    words = f"{what} is {size_text(*size)}"
+    if size.max() > LARGEST_EXTENT:
+        cause = LARGE_MAP if stage.map and not stage.bounded else LARGE
+        return [f"{words}, above {LARGEST_EXTENT:g} m: {cause}"]
+    if size.max() < SMALLEST_EXTENT and (stage.bounded or not _starts_outside(trial, bounds)):
+        return [f"{words}, below {SMALLEST_EXTENT:g} m in each direction: {SMALL}"]
+    return []
+
+
+def size_text(width: float, height: float) -> str:
+    """Return a size in words, with three digits.
+
+    >>> size_text(20_000.0, 0.12345)
+    '20000 m x 0.123 m'
+    """
+    return " x ".join(f"{float(f'{side:.3g}'):g} m" for side in (width, height))
+
+
+def _starts_outside(trial: Trial, bounds: NDArray[Any]) -> bool:
+    """Return whether a person or a robot starts outside a box, or may do so."""
+    spots = [point for spawner in trial.spawners for point in spawner.zone]
+    spots += [point for source in trial.sources for point in source.zone]
+    spots += [(agent.x, agent.y) for agent in trial.agents]
+    spots += [(robot.x, robot.y) for robot in trial.robots]
+    places = np.array(spots, dtype=np.float64).reshape(-1, 2)
+    return bool(trial.recorded) or bool(np.any((places < bounds[:2]) | (places > bounds[2:])))
 
 
 def fitting(periods: Sequence[float]) -> float:

@@ -17,16 +17,23 @@ from crowdbot.trials.cameras.camera import Camera
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.placement.population import place
-from crowdbot.trials.placement.robot_gaps import gap_to_robot, gap_to_walls, smallest_reach, start_outline
+from crowdbot.trials.placement.population import gap_to_robot, gap_to_walls, place, smallest_reach, start_outline
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
 from crowdbot.trials.robots.robot_pose import start_problem
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
 
-from .context import Problems, ValidationContext, skip_unreadable
-from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_stops, names
+from .flow_checks import (
+    Problems,
+    ValidationContext,
+    arrival_count,
+    duplicate_names,
+    flows,
+    inaccessible_stops,
+    names,
+    skip_unreadable,
+)
 from .ground_checks import ground_problems
 from .rates import fitting, misfits
 
