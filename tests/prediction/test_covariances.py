@@ -11,31 +11,57 @@ import pytest
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Trajectories, Windows, resample_rows, slice_rows
-from crowdbot.metrics import ellipse_coverage
+from crowdbot.metrics import region_coverage, region_levels
 from crowdbot.prediction import AnchorNet, ConstantVelocity, Kalman, Live
-from crowdbot.prediction.anchor_net.mixture import FILTERED, WIDENED
+from crowdbot.prediction.anchor_net.mixture import EARLY_WIDTH, WIDTH
 from crowdbot.prediction.pretrained_weights import find_weights
 
 Maker = Callable[..., Windows]
 
 
-def test_covariance_of_anchor_net_is_that_of_its_draws(crowd: Maker) -> None:
+def test_mixture_of_anchor_net_is_that_of_its_draws(crowd: Maker) -> None:
     past = crowd(seed=3)
-    net = AnchorNet(contact=0.0)
-    whole, filtered = net.predict(past, 12).covariance, Kalman().predict(past, 12).covariance
-    assert whole is not None
-    assert filtered is not None
-    own = (whole - FILTERED * filtered) / WIDENED
+    net, here = AnchorNet(contact=0.0), past.present[:, -1]
+    forecast = net.predict(past, 12, 20)
+    weight, mean, covariance = forecast.mixture()
+    np.testing.assert_allclose(weight.sum(axis=1)[here], 1.0)
     middle = net.predict(past, 12).position[:, 0]
     drawn = dataclasses.replace(net, sample="draws").predict(past, 12, 4000, stream(5)).position
-    away = drawn - middle[:, None]
-    found = np.einsum("wktai,wktaj->wtaij", away, away) / 4000
-    here = past.present[:, -1]
     for step in (0, 5, 11):
-        np.testing.assert_allclose(
-            own[:, step][here], found[:, step][here], rtol=0.0, atol=0.12 * found[:, step][here].max()
-        )
-    assert np.all(own[:, :, ~here.all(axis=0)][:, :, 0][~here[:, ~here.all(axis=0)][:, 0]] == 0.0)
+        width = WIDTH + EARLY_WIDTH / (step + 1.0)
+        own = np.einsum("wka,wkaij->waij", weight, covariance[:, :, step]) / width**2  # the draws are not widened
+        away = mean[:, :, step] - middle[:, None, step]
+        own += np.einsum("wka,wkai,wkaj->waij", weight, away, away)
+        far = drawn[:, :, step] - middle[:, None, step]
+        found = np.einsum("wkai,wkaj->waij", far, far) / 4000
+        np.testing.assert_allclose(own[here], found[here], rtol=0.0, atol=0.12 * found[here].max())
+    assert np.all(covariance.swapaxes(1, 3)[:, :, :, 0][~here] == 0.0)
+
+
+def test_covariance_is_that_of_the_mixture_around_the_single_trajectory(crowd: Maker) -> None:
+    past = crowd(seed=3)
+    net, here = AnchorNet(contact=0.0), past.present[:, -1]
+    alone, forecast = net.predict(past, 12), net.predict(past, 12, 20)
+    assert alone.covariance is not None
+    weight, mean, covariance = forecast.mixture()
+    away = mean - alone.position
+    whole = np.einsum("wka,wktaij->wtaij", weight, covariance + away[..., :, None] * away[..., None, :])
+    np.testing.assert_allclose(alone.covariance.swapaxes(1, 2)[here], whole.swapaxes(1, 2)[here], atol=1e-9)
+    np.testing.assert_array_equal(alone.covariance, forecast.covariance)
+    assert alone.mixture().covariance.shape == (len(past), 1, 12, past.present.shape[2], 2, 2)
+
+
+def test_levels_of_drawn_truths_are_evenly_distributed() -> None:
+    rng = stream(1, "levels")
+    weight, mean = np.array([0.6, 0.3, 0.1]), np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 9.0]])
+    shape = np.array([[[0.5, 0.2], [0.2, 0.3]], np.eye(2), 0.1 * np.eye(2)])
+    which = rng.choice(3, 4000, p=weight)
+    truth = mean[which] + np.einsum("nij,nj->ni", np.linalg.cholesky(shape)[which], rng.standard_normal((4000, 2)))
+    level = region_levels(*(np.broadcast_to(part, (4000, *part.shape)) for part in (weight, mean, shape)), truth)
+    for share in (0.2, 0.5, 0.8, 0.95):
+        assert np.mean(level <= share) == pytest.approx(share, abs=0.03)
+    flat = region_levels(np.ones((1, 1)), np.zeros((1, 1, 2)), np.zeros((1, 1, 2, 2)), np.zeros((1, 2)))
+    assert flat.tolist() == [1.0]
 
 
 @pytest.mark.parametrize("samples", [1, 20])
@@ -170,7 +196,7 @@ def test_anchor_net_is_as_unsure_as_the_tracker() -> None:
     one, other = sure.predict(12), unsure.predict(12)
     assert one.covariance is not None
     assert other.covariance is not None
-    assert np.all((other.covariance - one.covariance)[0, :, :, [0, 1], [0, 1]] > 0.04)
+    assert np.all((other.covariance - one.covariance)[0, :, :, [0, 1], [0, 1]] > 0.0399)
     # to a sure tracker the wave is a turn, to an unsure one it is noise
     aside = [np.abs(forecast.position[0, 0, -1, 0, 1]) for forecast in (one, other)]
     assert aside[1] < 0.8 * aside[0]
@@ -219,11 +245,11 @@ def test_coverage_of_drawn_truths_is_the_asked_share(windows: Maker) -> None:
     forecast = Forecast.of(np.zeros((4000, 1, 3, 1, 2)), np.ones((4000, 1), dtype=bool), 0.4, "drawn")
     forecast = dataclasses.replace(forecast, covariance=np.broadcast_to(shape, (4000, 3, 1, 2, 2)))
     for share in (0.5, 0.95):
-        np.testing.assert_allclose(ellipse_coverage(forecast, future, share), share, atol=0.03)
-    with pytest.raises(InputError, match="no covariance"):
-        ellipse_coverage(dataclasses.replace(forecast, covariance=None), future)
+        np.testing.assert_allclose(region_coverage(forecast, future, share), share, atol=0.03)
+    with pytest.raises(InputError, match="mixture: the forecast of drawn has no covariance"):
+        region_coverage(dataclasses.replace(forecast, covariance=None), future)
     with pytest.raises(InputError, match="must be between 0 and 1"):
-        ellipse_coverage(forecast, future, 95.0)
+        region_coverage(forecast, future, 95.0)
 
 
 def test_predictors_without_a_covariance_have_none_in_live() -> None:
@@ -232,13 +258,14 @@ def test_predictors_without_a_covariance_have_none_in_live() -> None:
     assert live.predict(2).covariance is None
 
 
-def test_the_ellipse_holds_most_people_of_a_data_set_that_no_default_weight_saw(
+def test_regions_hold_their_share_of_a_data_set_that_no_default_weight_saw(
     recorded: Callable[[str], Trajectories],
 ) -> None:
     past, future = recorded("biwi_hotel").windows()
-    held = ellipse_coverage(AnchorNet("open").predict(past, 12), future)
-    assert np.all(held > 0.9)
-    assert held[0] < 0.99
+    forecast = AnchorNet("open").predict(past[::4], 12, 20)
+    held = np.array([region_coverage(forecast, future[::4], share) for share in (0.5, 0.8, 0.95)])
+    assert np.all(held[2] > 0.9)
+    assert np.all(np.diff(held, axis=0) > 0.0)
 
 
 def test_the_folder_of_the_weights_says_what_they_learned_from() -> None:

@@ -5,15 +5,38 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Disc, InputError, Path2D, draw_svg
 
-ARRAYS = ("position", "weight", "valid", "covariance", "existence", "out_of_distribution", "person_weight")
+ARRAYS = (
+    "position",
+    "weight",
+    "valid",
+    "covariance",
+    "existence",
+    "out_of_distribution",
+    "person_weight",
+    "future_covariance",
+)
 """Fields with one entry per window."""
+
+
+class GaussianMixture(NamedTuple):
+    """Gaussian mixtures of positions of people, K components.
+
+    Fields:
+        weight: ``[W, K, A]``, sums to 1 over K for predicted people.
+        mean: ``[W, K, T, A, 2]`` [m].
+        covariance: ``[W, K, T, A, 2, 2]`` [m^2].
+    """
+
+    weight: NDArray[np.float64]
+    mean: NDArray[np.float64]
+    covariance: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -34,6 +57,8 @@ class Forecast:
             gives this share of its answer to a baseline.
         person_weight: ``[W, K, A]`` probability of a person's own future in each joint future, if the predictor has it;
             sums to 1 over K for predicted people. ``weight`` is that of the joint future.
+        future_covariance: ``[W, K, T, A, 2, 2]`` [m^2] of the true position around each future, if the predictor has
+            it: with ``person_weight``, a Gaussian mixture for each person and step, see :meth:`mixture`.
 
     Raises:
         InputError: the shapes do not fit, or a position of a predicted person is not finite.
@@ -53,6 +78,7 @@ class Forecast:
     existence: NDArray[np.float64] | None = None
     out_of_distribution: NDArray[np.float64] | None = None
     person_weight: NDArray[np.float64] | None = None
+    future_covariance: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         if self.position.ndim != 5 or self.position.shape[4] != 2:
@@ -61,6 +87,7 @@ class Forecast:
             )
         W, K, T, A, _ = self.position.shape
         shapes = {"weight": (W, K), "valid": (W, A), "covariance": (W, T, A, 2, 2), "existence": (W, A)}
+        shapes["future_covariance"] = (W, K, T, A, 2, 2)
         for name, fits in (shapes | {"out_of_distribution": (W, A), "person_weight": (W, K, A)}).items():
             value = getattr(self, name)
             if value is not None and value.shape != fits:
@@ -86,6 +113,23 @@ class Forecast:
         known = [name for name in ARRAYS if getattr(parts[0], name) is not None]
         joined: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in known}
         return dataclasses.replace(parts[0], **joined)
+
+    def mixture(self) -> GaussianMixture:
+        """Return the Gaussian mixture of the true position of each person at each step.
+
+        Its components are the futures, with ``future_covariance``; or the forecast with K = 1, with ``covariance``.
+
+        Raises:
+            InputError: the forecast has neither.
+        """
+        if self.future_covariance is not None:
+            equal = np.repeat(self.weight[:, :, None], self.valid.shape[1], axis=2)
+            own = equal if self.person_weight is None else self.person_weight
+            return GaussianMixture(own, self.position, self.future_covariance)
+        if self.covariance is None or self.samples != 1:
+            what = "no covariance" if self.covariance is None else f"{self.samples} samples without covariances"
+            raise InputError(f"mixture: the forecast of {self.predictor} has {what}")
+        return GaussianMixture(np.ones((len(self), 1, self.valid.shape[1])), self.position, self.covariance[:, None])
 
     @property
     def samples(self) -> int:

@@ -4,7 +4,7 @@ from .agent_states import AgentLog, AgentStates
 from .collisions import collision_mask, collision_share, neighbor_mask, swept_collisions
 from .contact_tracker import ContactTracker
 from .contacts import HOLD, ContactEvent, cause_of, contact_events
-from .coverage import ellipse_coverage
+from .coverage import region_coverage, region_levels
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .energy import energy_score
 from .impacts import IMPACT_METRICS, Impact, impact_metrics
@@ -139,7 +139,6 @@ __all__ = [
     "distances",
     "draw_counts",
     "earth_mover_distance",
-    "ellipse_coverage",
     "empty_scene_ratios",
     "energy_score",
     "error_over_horizon",
@@ -185,6 +184,8 @@ __all__ = [
     "proxemic_shares",
     "range_error",
     "record_clearance",
+    "region_coverage",
+    "region_levels",
     "scan_time_to_collision",
     "score",
     "stalled_time",

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.data import Windows
-from crowdbot.typing import Floats
+from crowdbot.typing import Floats, Ints
 
 from .joint_kernels import assign_futures, first_crossing, separate_paths
 
@@ -18,8 +18,8 @@ ROUNDS = 12
 """Maximum number of separation rounds."""
 
 
-def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats, Floats]:
-    """Return joint futures ``[W, K, T, A, 2]`` [m], their weights ``[W, K]``, and those of each person ``[W, K, A]``.
+def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats, Ints]:
+    """Return joint futures ``[W, K, T, A, 2]`` [m], their weights ``[W, K]``, and their futures ``[W, K, A]``.
 
     Args:
         past: windows.
@@ -31,23 +31,20 @@ def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float
     each individual future once.
     """
     W, K = place.shape[:2]
-    found, weight, single = place.copy(), np.full((W, K), 1.0 / K), np.zeros((W, K, place.shape[3]))
+    found, weight = place.copy(), np.full((W, K), 1.0 / K)
+    order = np.tile(np.arange(K)[:, None], (W, 1, place.shape[3]))
     for window, who in _members(past):
         choice = _choice(past, place, window, who, contact, ORDER)
         found[window][:, :, who] = _reorder(place[window][:, :, who], choice)
         own = np.take_along_axis(share[window, who], choice, axis=1)
-        single[window][:, who] = own.T
+        order[window][:, who] = choice.T
         people = [a for a, person in enumerate(who) if not past.robot[window, person]]
         if people:
             total = np.cumsum(own[people], axis=0)[-1]
             weight[window] = total / np.cumsum(total)[-1]
         first = np.argsort(-weight[window], kind="stable")
-        found[window], weight[window], single[window] = (
-            found[window][first],
-            weight[window][first],
-            single[window][first],
-        )
-    return found, weight, single
+        found[window], weight[window], order[window] = found[window][first], weight[window][first], order[window][first]
+    return found, weight, order
 
 
 def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -> Floats:

@@ -266,11 +266,15 @@ class Live:
                 self._memory = memory
             self._report(memory, begin)
         self._warn()
-        covariance = forecast.covariance
+        covariance, futures = forecast.covariance, forecast.future_covariance
         if self._pose_covariance and covariance is not None and rows.uncertainty is not None:
             mean = np.einsum("k,ktac->tac", forecast.weight[0], forecast.position[0])
-            covariance = covariance + _placed_covariances(rows.uncertainty, mean)[None]
-        return dataclasses.replace(forecast, existence=rows.existence[None], covariance=covariance)
+            pose = _placed_covariances(rows.uncertainty, mean)[None]
+            covariance = covariance + pose
+            futures = None if futures is None else futures + pose[:, None]
+        return dataclasses.replace(
+            forecast, existence=rows.existence[None], covariance=covariance, future_covariance=futures
+        )
 
     def _warn(self) -> None:
         """Warn the caller of a public method of what is new."""

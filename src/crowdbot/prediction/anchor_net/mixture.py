@@ -1,4 +1,4 @@
-"""Covariances of a mixture of futures around one trajectory, widened for places and trackers that no training saw."""
+"""Covariances of the futures of people, and of their mixture around one trajectory."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.data import Windows
 from crowdbot.prediction.kalman import Kalman
+from crowdbot.prediction.pretrained_weights import STEP
 from crowdbot.typing import Floats
 
 from .agent_frame import PREDICTED_ROWS, rotate
@@ -15,45 +16,50 @@ from .anchors import resample_paths
 
 HORIZON = 4.8
 """Horizon of the training [s]; beyond it standard deviations grow in proportion to time."""
-WIDENED, FILTERED = 3.0, 0.2
-"""Factors of the covariance of the mixture and of that of the Kalman filter in their sum. The training recordings are
-interpolated and have hardly any noise, so the mixture alone is overconfident elsewhere."""
+WIDTH, EARLY_WIDTH = 1.45, 0.7
+"""Factor of the standard deviation of a future at t: ``WIDTH + EARLY_WIDTH * 0.4 s / t``. The training recordings are
+interpolated and have hardly any noise, so the mixture alone is too narrow elsewhere, above all at short horizons. The
+values are chosen as by ``python studies/forecast_calibration.py DATA --fit``, on at most 250 people of a data set."""
 
 
 @kernel
 def add_products(
-    probability: Floats, spread: Floats, arm: Floats, away: Floats
-) -> Floats:  # pragma: no cover - compiled
-    """Return covariances ``[N, T, 2, 2]`` [m^2] within and between K futures, summed in a fixed order.
+    probability: Floats, spread: Floats, arm: Floats, away: Floats, width: Floats, growth: Floats
+) -> tuple[Floats, Floats]:  # pragma: no cover - compiled
+    """Return covariances ``[N, K, T, 2, 2]`` [m^2] of the futures, and ``[N, T, 2, 2]`` of all around the trajectory.
+
+    Sums have a fixed order.
 
     Args:
         probability, spread: ``[N, K]``, ``[N, K, D]`` of the futures.
         arm: ``[N, D, T, 2]`` [m] displacements by the coefficients.
         away: ``[N, K, T, 2]`` [m] from the trajectory to each future.
+        width: ``[T]`` factors of the standard deviation of a future.
+        growth: ``[T]`` factors of the covariances.
     """
     N, D, T, _ = arm.shape
-    products = np.zeros((N, T, 2, 2))
+    K = probability.shape[1]
+    own, products = np.zeros((N, K, T, 2, 2)), np.zeros((N, T, 2, 2))
     for n in range(N):
-        for d in range(D):
-            variance = 0.0
-            for k in range(probability.shape[1]):
-                variance += probability[n, k] * spread[n, k, d] ** 2
+        for k in range(K):
             for t in range(T):
                 for x in range(2):
                     for y in range(2):
-                        products[n, t, x, y] += variance * arm[n, d, t, x] * arm[n, d, t, y]
-        for k in range(probability.shape[1]):
-            for t in range(T):
-                for x in range(2):
-                    for y in range(2):
-                        products[n, t, x, y] += probability[n, k] * away[n, k, t, x] * away[n, k, t, y]
-    return products
+                        total = 0.0
+                        for d in range(D):
+                            total += spread[n, k, d] ** 2 * arm[n, d, t, x] * arm[n, d, t, y]
+                        own[n, k, t, x, y] = growth[t] * width[t] ** 2 * total
+                        between = growth[t] * away[n, k, t, x] * away[n, k, t, y]
+                        products[n, t, x, y] += probability[n, k] * (own[n, k, t, x, y] + between)
+    return own, products
 
 
 def future_covariances(
     basis: Floats, probability: Floats, spread: Floats, away: Floats, heading: Floats, steps: int, dt: float
-) -> Floats:
-    """Return covariances ``[N, T, 2, 2]`` [m^2] of the mixture of futures of N people around one trajectory.
+) -> tuple[Floats, Floats]:
+    """Return covariances ``[N, K, T, 2, 2]`` [m^2] of the futures of N people, and ``[N, T, 2, 2]`` of their mixture.
+
+    The second ones are around one trajectory.
 
     Args:
         basis: ``[D, 24]`` residuals of the coefficients.
@@ -65,32 +71,32 @@ def future_covariances(
     """
     D, N = len(basis), len(probability)
     shape = resample_paths(basis.reshape(1, D, PREDICTED_ROWS, 2), np.zeros((1, 2)), steps, dt)[0]
-    time = dt * np.arange(1, steps + 1)
+    time = dt * np.arange(1.0, steps + 1.0)
     arm = rotate(np.broadcast_to(shape, (N, D, steps, 2)), heading, back=True)
-    found = add_products(probability, spread, np.ascontiguousarray(arm), np.ascontiguousarray(away))
-    found *= (np.maximum(time / HORIZON, 1.0) ** 2)[:, None, None]
-    return found
+    width = np.asarray(WIDTH + EARLY_WIDTH * STEP / time)
+    growth = np.asarray(np.maximum(time / HORIZON, 1.0) ** 2)
+    return add_products(probability, spread, np.ascontiguousarray(arm), np.ascontiguousarray(away), width, growth)
 
 
-def total_covariances(past: Windows, mixture: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
-    """Return covariances ``[W, T, A, 2, 2]`` [m^2] of agents by slot; 0 for absent agents and known plans.
+def placed_covariances(past: Windows, own: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
+    """Return covariances ``[W, K, T, A, 2, 2]`` [m^2] of agents by slot; 0 for absent agents and known plans.
 
-    They are the weighted sum of those of the mixture ``[N, T, 2, 2]`` and of the Kalman filter, and that of the last
-    position if the tracker gives it, since the futures start there. People observed once have that of the filter, whose
-    velocity is unknown then.
+    They are those of N people, ``[N, K, T, 2, 2]``, plus that of the last position if the tracker gives it, since the
+    futures start there. People observed once have that of the Kalman filter, whose velocity is unknown then.
     """
-    W, A = past.present.shape[0], past.present.shape[2]
-    filtered = Kalman().predict(past, mixture.shape[1]).covariance
-    assert filtered is not None
-    own = np.zeros((W, mixture.shape[1], A, 2, 2))
-    own[window, :, slot] = mixture
-    once = (past.present.sum(axis=1) == 1)[:, None, :, None, None]
-    found = WIDENED * own + FILTERED * filtered
+    W, A, (_, K, steps) = len(past), past.present.shape[2], own.shape[:3]
+    found = np.zeros((W, K, steps, A, 2, 2))
+    found[window, :, :, slot] = own
     if past.covariance is not None:
-        found += np.where(past.present[:, -1, :, None, None], np.nan_to_num(past.covariance[:, -1]), 0.0)[:, None]
-    found = np.where(once, filtered, found)
+        last = np.where(past.present[:, -1, :, None, None], np.nan_to_num(past.covariance[:, -1]), 0.0)
+        found += last[:, None, None]
+    once = np.equal(past.present.sum(axis=1), 1)[:, None, None, :, None, None]
+    if np.any(once):
+        filtered = Kalman().predict(past, steps).covariance
+        assert filtered is not None
+        found = np.where(once, filtered[:, None], found)
     if past.plan is not None:
-        for step in range(mixture.shape[1]):
-            known = ~np.isnan(past.plan_at(step + 1)).any(axis=-1)
-            found[:, step][known] = 0.0
+        for step in range(steps):
+            known = np.asarray(~np.isnan(past.plan_at(step + 1)).any(axis=-1))
+            found[:, :, step] = np.where(known[:, None, :, None, None], 0.0, found[:, :, step])
     return found

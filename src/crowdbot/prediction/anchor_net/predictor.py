@@ -32,7 +32,7 @@ from .agent_frame import HISTORY, PREDICTED_ROWS, agent_features, agent_historie
 from .anchors import CHAI, resample_paths, scatter_to_slots
 from .filtered_line import filtered_lines
 from .forward_pass import feature_limit, network_output, reach_of
-from .mixture import future_covariances, total_covariances
+from .mixture import future_covariances, placed_covariances
 from .out_of_distribution import out_of_distribution, steadiness
 from .own_weights import load_own_weights, load_reaction
 from .plan_reaction import PlanReaction, Walks, reaction_displacements
@@ -116,8 +116,9 @@ class AnchorNet(Predictor):
         contact: minimum distance between the centres of people of a joint future, also between rows [m], where the
             windows have no radii; 0 disables joint futures.
 
-    The forecast has the covariance of the mixture of futures around the single trajectory, widened for other places.
-    Where the windows have covariances of the measured positions, the filters and this covariance use them.
+    The forecast has the covariance of the mixture of futures around the single trajectory; with K > 1 also the
+    Gaussian mixture itself (:meth:`.Forecast.mixture`), which is whole with K = 20. Where the windows have covariances
+    of the measured positions, the filters and these covariances use them.
 
     Forecasts are equivariant to translations and rotations, except for people who never moved. Other time steps up to
     0.7 s are interpolated; with longer ones, or in pixels, a baseline is used, with a warning. Beyond 4.8 s the
@@ -174,13 +175,16 @@ class AnchorNet(Predictor):
         place = scatter_to_slots(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
         share[bends.window, bends.slot] = np.take_along_axis(bends.probability, pairing, axis=1)
-        place, weight, own = coordinate_modes(past, place, share, self.contact)
+        place, weight, order = coordinate_modes(past, place, share, self.contact)
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
         forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
-        forecast = _with_uncertainty(forecast, past, numbers, bends, modes)
-        total = own[:, :samples].sum(axis=1, keepdims=True)
-        own = own[:, :samples] / np.where(total > 0.0, total, 1.0)
-        return dataclasses.replace(forecast, weight=weight, person_weight=own)
+        forecast, futures = _with_mixture(forecast, past, numbers, bends, modes)
+        futures = placed_covariances(past, futures[np.arange(len(modes))[:, None], pairing], bends.window, bends.slot)
+        futures = np.take_along_axis(futures, order[:, :samples, None, :, None, None], axis=1)
+        own = np.take_along_axis(share.swapaxes(1, 2), order[:, :samples], axis=1)
+        total = own.sum(axis=1, keepdims=True)
+        own = own / np.where(total > 0.0, total, 1.0)
+        return dataclasses.replace(forecast, weight=weight, person_weight=own, future_covariance=futures)
 
     def modes(self, past: Windows, steps: int = PREDICTED_ROWS) -> Modes:
         """Return the individual futures and probabilities of all agents present at the last row.
@@ -317,23 +321,24 @@ def _pairing(bends: _Bends, samples: int) -> Ints:
     return np.where(bends.slow[:, None], rank, np.argsort(bends.anchor, axis=1))
 
 
-def _with_uncertainty(
-    forecast: Forecast, past: Windows, numbers: Numbers, bends: _Bends, modes: Floats | None = None
-) -> Forecast:
-    """Return the forecast with the covariance and the out-of-distribution score of each person.
+def _with_uncertainty(forecast: Forecast, past: Windows, numbers: Numbers, bends: _Bends) -> Forecast:
+    """Return the forecast with the covariance and the out-of-distribution score of each person."""
+    return _with_mixture(forecast, past, numbers, bends, _path(numbers, bends, bends.mode, past, forecast.steps)[0])[0]
 
-    ``modes`` are the paths ``[N, K, T, 2]`` of all futures, if they are known.
-    """
+
+def _with_mixture(
+    forecast: Forecast, past: Windows, numbers: Numbers, bends: _Bends, modes: Floats
+) -> tuple[Forecast, Floats]:
+    """Return the forecast with uncertainty, and the covariances ``[N, K, T, 2, 2]`` of the paths of all futures."""
     foreign = np.zeros((len(past), past.present.shape[2]))
     foreign[bends.window, bends.slot] = bends.foreign
     steps = forecast.steps
     middle = _path(numbers, bends, bends.single[:, None], past, steps)[0]
-    away = (_path(numbers, bends, bends.mode, past, steps)[0] if modes is None else modes) - middle
-    own = future_covariances(
-        numbers["basis"], bends.probability, bends.spread, away, bends.heading, steps, past.dt
+    own, whole = future_covariances(
+        numbers["basis"], bends.probability, bends.spread, modes - middle, bends.heading, steps, past.dt
     )  # fmt: skip
-    covariance = total_covariances(past, own, bends.window, bends.slot)
-    return dataclasses.replace(forecast, covariance=covariance, out_of_distribution=foreign)
+    covariance = placed_covariances(past, whole[:, None], bends.window, bends.slot)[:, 0]
+    return dataclasses.replace(forecast, covariance=covariance, out_of_distribution=foreign), own
 
 
 def _around_walls(bends: _Bends, numbers: Numbers, past: Windows) -> _Bends:
