@@ -560,8 +560,6 @@ def test_models_of_gazebo_stand_where_the_saved_state_puts_them(tmp_path):
 def test_a_mesh_of_gazebo_becomes_walls(tmp_path, ending, place):
     import trimesh
 
-    if ending == "dae":
-        pytest.importorskip("collada")
     folder = tmp_path / place
     folder.mkdir(parents=True)
     box = trimesh.creation.box((400.0, 200.0, 250.0)).apply_translation((0.0, 0.0, 125.0))

@@ -183,6 +183,7 @@ def test_lengths_stand_at_the_walls_that_are_drawn_or_chosen(editor):
     page.mouse.click(x, y)
     page.mouse.move(x + 2.5 * scale, y)
     page.wait_for_function("() => window.written.includes('2.5 m')")
+    assert {"4 m", "3 m", "2.5 m"} <= set(page.evaluate("window.written"))
 
 
 def test_the_keyboard_alone_is_enough(editor):
