@@ -416,3 +416,15 @@ def test_a_clock_is_seen_in_other_files_of_the_tests(text: str, clock: str, tmp_
     found = readings(tmp_path / "here" / "test_sample.py", Imports(tmp_path))
     line = next(k for k, row in enumerate(text.splitlines(), 1) if "def test_x" in row)
     assert found == ([f"{line}: test_x reads {clock}: {REMEDY}"] if clock else [])
+
+
+def test_compressed_bytes_do_not_hold_the_time() -> None:
+    """Two workers that import a file in different seconds would otherwise collect different cases."""
+    found = [
+        f"{path.relative_to(TESTS.parent)}:{node.lineno}: give gzip.compress mtime=0"
+        for path in sorted(TESTS.rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and dotted_name(node.func) == "gzip.compress"
+        if all(word.arg != "mtime" for word in node.keywords)
+    ]
+    assert not found, "\n".join(found)

@@ -16,10 +16,10 @@ from .anchors import resample_paths
 
 HORIZON = 4.8
 """Horizon of the training [s]; beyond it standard deviations grow in proportion to time."""
-WIDTH, EARLY_WIDTH = 1.45, 0.7
+WIDTH, EARLY_WIDTH = 1.3, 1.0
 """Factor of the standard deviation of a future at t: ``WIDTH + EARLY_WIDTH * 0.4 s / t``. The training recordings are
-interpolated and have hardly any noise, so the mixture alone is too narrow elsewhere, above all at short horizons. The
-values are chosen as by ``python studies/forecast_calibration.py DATA --fit``, on at most 250 people of a data set."""
+interpolated and have hardly any noise, so the mixture alone is too narrow elsewhere, above all at short horizons.
+``python studies/forecast_calibration.py DATA --fit`` chooses the values."""
 
 
 @kernel
