@@ -194,7 +194,11 @@ def trajnet_row(options: argparse.Namespace, file: str, predictor: Predictor, sa
     best = best_of(ade(forecast, future), fde(forecast, future), "same")
     mean, last = (values[future.scored] for values in best)
     first = dataclasses.replace(
-        forecast, position=forecast.position[:, :1], weight=np.ones((len(past), 1)), person_weight=None
+        forecast,
+        position=forecast.position[:, :1],
+        weight=np.ones((len(past), 1)),
+        person_weight=None,
+        future_covariance=None,
     )
     hits = [
         collision_mask(first, future, 0.2, "predicted", 2, everyone=True),

@@ -74,7 +74,7 @@ def test_every_mean_is_that_of_its_metric() -> None:
         share, true = (np.nanmean(each) for each in swept_collisions(forecast, past, future, limit))
         assert (getattr(one, name), getattr(one, f"{name}_truth")) == pytest.approx((share, true))
     assert f"at 0.2 m {100 * one.swept_collisions:.1f} ({100 * one.swept_collisions_truth:.1f}) %" in str(one)
-    assert one.cells()[one.columns.index("radii (truth)")] in str(one)
+    assert one.cells()[one.columns.index("radii [%]")] in str(one)
     nll = kde_nll(forecast, future)[future.scored]
     assert one.nll == pytest.approx(nll.mean())
     assert one.dense == len(nll)

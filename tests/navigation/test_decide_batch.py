@@ -28,6 +28,7 @@ LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 OTHERS = (
     "external",
     "follower",
+    "mppi",
     "predicted-occupancy",
     "process",
     "real-robot",

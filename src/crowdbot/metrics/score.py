@@ -245,8 +245,8 @@ class Score:
             "NLL": "-" if math.isnan(self.nll) else f"{self.nll:.2f}{self._share_with_density()}",
             "energy": "-" if math.isnan(self.energy) else f"{self.energy:.3f}",
             "collisions": "-" if math.isnan(self.collisions) else f"{100.0 * self.collisions:.1f} %",
-            "swept (truth)": _shares(self.swept_collisions, self.swept_collisions_truth),
-            "radii (truth)": _shares(self.swept_contacts, self.swept_contacts_truth),
+            "swept [%]": _shares(self.swept_collisions, self.swept_collisions_truth),
+            "radii [%]": _shares(self.swept_contacts, self.swept_contacts_truth),
             "ms/window": "-" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g}",
         }
 
@@ -273,8 +273,8 @@ class Score:
             ""
             if math.isnan(self.swept_collisions)
             else "swept between rows (truth) at 0.2 m"
-            f" {_shares(self.swept_collisions, self.swept_collisions_truth)}, at the radii"
-            f" {_shares(self.swept_contacts, self.swept_contacts_truth)}",
+            f" {_shares(self.swept_collisions, self.swept_collisions_truth)} %, at the radii"
+            f" {_shares(self.swept_contacts, self.swept_contacts_truth)} %",
             "" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g} ms a window",
         ]
         return (
@@ -323,8 +323,8 @@ def _swept(errors: PersonErrors, together: NDArray[np.bool_]) -> dict[str, float
 
 
 def _shares(value: float, truth: float) -> str:
-    """Return a share and, in brackets, that of the truth."""
-    return "-" if math.isnan(value) else f"{100.0 * value:.1f} ({100.0 * truth:.1f}) %"
+    """Return a share and, in brackets, that of the truth [%]."""
+    return "-" if math.isnan(value) else f"{100.0 * value:.1f} ({100.0 * truth:.1f})"
 
 
 def _known_mean(values: NDArray[np.float64]) -> float:
