@@ -78,25 +78,52 @@ def future_covariances(
     return add_products(probability, spread, np.ascontiguousarray(arm), np.ascontiguousarray(away), width, growth)
 
 
-def placed_covariances(past: Windows, own: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
-    """Return covariances ``[W, K, T, A, 2, 2]`` [m^2] of agents by slot; 0 for absent agents and known plans.
+@kernel
+def scatter_covariances(
+    own: Floats, future: NDArray[np.int64], window: NDArray[np.int64], slot: NDArray[np.int64], placed: Floats
+) -> None:  # pragma: no cover - compiled
+    """Write the covariances of chosen futures of people into their windows and slots.
 
-    They are those of N people, ``[N, K, T, 2, 2]``, plus that of the last position if the tracker gives it, since the
-    futures start there. People observed once have that of the Kalman filter, whose velocity is unknown then.
+    Args:
+        own: ``[N, K, T, 2, 2]`` of all futures of N people.
+        future: ``[N, S]`` which of them are chosen.
+        window, slot: ``[N]`` of the people.
+        placed: ``[W, S, T, A, 2, 2]``, changed.
     """
-    W, A, (_, K, steps) = len(past), past.present.shape[2], own.shape[:3]
-    found = np.zeros((W, K, steps, A, 2, 2))
-    found[window, :, :, slot] = own
+    N, S = future.shape
+    T = own.shape[2]
+    for n in range(N):
+        w, a = window[n], slot[n]
+        for s in range(S):
+            k = future[n, s]
+            for t in range(T):
+                for x in range(2):
+                    for y in range(2):
+                        placed[w, s, t, a, x, y] = own[n, k, t, x, y]
+
+
+def placed_covariances(
+    past: Windows, own: Floats, future: NDArray[np.int64], window: NDArray[np.int64], slot: NDArray[np.int64]
+) -> Floats:
+    """Return covariances ``[W, S, T, A, 2, 2]`` [m^2] of agents by slot; 0 for absent agents and known plans.
+
+    They are those of futures ``[N, S]`` of N people, chosen from ``own``, ``[N, K, T, 2, 2]``, plus that of the last
+    position if the tracker gives it, since the futures start there. People observed once have that of the Kalman
+    filter, whose velocity is unknown then.
+    """
+    W, A, S, steps = len(past), past.present.shape[2], future.shape[1], own.shape[2]
+    placed = np.zeros((W, S, steps, A, 2, 2))
+    scatter_covariances(own, future, window, slot, placed)
     if past.covariance is not None:
         last = np.where(past.present[:, -1, :, None, None], np.nan_to_num(past.covariance[:, -1]), 0.0)
-        found += last[:, None, None]
+        placed += last[:, None, None]
     once = np.equal(past.present.sum(axis=1), 1)[:, None, None, :, None, None]
     if np.any(once):
         filtered = Kalman().predict(past, steps).covariance
         assert filtered is not None
-        found = np.where(once, filtered[:, None], found)
+        placed = np.where(once, filtered[:, None], placed)
     if past.plan is not None:
         for step in range(steps):
             known = np.asarray(~np.isnan(past.plan_at(step + 1)).any(axis=-1))
-            found[:, :, step] = np.where(known[:, None, :, None, None], 0.0, found[:, :, step])
-    return found
+            placed[:, :, step] = np.where(known[:, None, :, None, None], 0.0, placed[:, :, step])
+    return placed

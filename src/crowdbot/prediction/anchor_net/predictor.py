@@ -179,8 +179,8 @@ class AnchorNet(Predictor):
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
         forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
         forecast, futures = _with_mixture(forecast, past, numbers, bends, modes)
-        futures = placed_covariances(past, futures[np.arange(len(modes))[:, None], pairing], bends.window, bends.slot)
-        futures = np.take_along_axis(futures, order[:, :samples, None, :, None, None], axis=1)
+        chosen = np.take_along_axis(pairing, order[bends.window, :samples, bends.slot], axis=1)
+        futures = placed_covariances(past, futures, chosen, bends.window, bends.slot)
         own = np.take_along_axis(share.swapaxes(1, 2), order[:, :samples], axis=1)
         total = own.sum(axis=1, keepdims=True)
         own = own / np.where(total > 0.0, total, 1.0)
@@ -337,7 +337,8 @@ def _with_mixture(
     own, whole = future_covariances(
         numbers["basis"], bends.probability, bends.spread, modes - middle, bends.heading, steps, past.dt
     )  # fmt: skip
-    covariance = placed_covariances(past, whole[:, None], bends.window, bends.slot)[:, 0]
+    single = np.zeros((len(whole), 1), dtype=np.int64)
+    covariance = placed_covariances(past, whole[:, None], single, bends.window, bends.slot)[:, 0]
     return dataclasses.replace(forecast, covariance=covariance, out_of_distribution=foreign), own
 
 

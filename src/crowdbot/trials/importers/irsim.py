@@ -70,8 +70,11 @@ class _Reader:
         self.scene, self.world = scene, world
         self.models: list[CrowdModel] = []
         self.rng = np.random.default_rng(0)
-        self.drawn: list[tuple[float, float, float]] = []
-        """Places that are drawn, with the radius [m] of what is there."""
+        self.drawn = np.zeros((2 * MOST_OBJECTS, 3))
+        """Places and goals that are drawn, with the radius [m] of what is there, as many as ``count``."""
+        self.count = 0
+        self.full: set[tuple[float, ...]] = set()
+        """Ranges without room for a body: its radius is the last value."""
         self.solids: Any = None
         """Solids at places of the file, a geometry of shapely, once they are read."""
 
@@ -201,26 +204,31 @@ class _Reader:
             raise self.scene.error(f"{label}: range_low must not be above range_high")
         shape = _item(row.get("shape"), k, dict) or {}
         reach = _reach(shape if isinstance(shape, dict) else {})
-        x, y, turn = self._draw(low, high, reach, f"{label}: object {k + 1}")
+        x, y, turn = self._draw(low, high, reach, label)
         rows = row.get("goal")
         if rows is not None:
             goal = _item(rows, k, float) if _depth(rows) == 2 else rows
             return (x, y, turn), [(_at(goal, 0, f"{label}: goal"), _at(goal, 1, f"{label}: goal"))]
         moves = row.get("kinematics") is not None and not row.get("static")
-        return (x, y, turn), [self._draw(low, high, reach, f"{label}: goal {k + 1}")[:2]] if moves else []
+        return (x, y, turn), [self._draw(low, high, reach, label)[:2]] if moves else []
 
-    def _draw(self, low: list[float], high: list[float], reach: float, what: str) -> tuple[float, float, float]:
+    def _draw(self, low: list[float], high: list[float], reach: float, label: str) -> tuple[float, float, float]:
         """A place in a range that is clear of solids and of what is drawn before, and a heading."""
         import shapely
 
-        for _ in range(MOST_DRAWS):
+        key = (*low, *high, reach)
+        x = y = turn = 0.0
+        for _ in range(1 if key in self.full else MOST_DRAWS):
             x, y, turn = (float(value) for value in np.round(self.rng.uniform(np.array(low), np.array(high)), 6))
-            clear = all(math.hypot(x - u, y - v) > reach + other for u, v, other in self.drawn)
-            if clear and not shapely.distance(self.solids, shapely.Point(x, y)) <= reach:  # NaN without solids
+            there = self.drawn[: self.count]
+            apart = np.hypot(x - there[:, 0], y - there[:, 1]) > reach + there[:, 2]
+            if apart.all() and not shapely.distance(self.solids, shapely.Point(x, y)) <= reach:  # NaN without solids
                 break
         else:
-            self.scene.note(f"{what}: there is no room in its range, it may overlap others")
-        self.drawn.append((x, y, reach))
+            self.full.add(key)
+            self.scene.note(f"{label}: there is no room for all in its range, some may overlap others")
+        self.drawn[self.count] = x, y, reach
+        self.count += 1
         return x, y, turn
 
     def _random_shape(self, label: str, shape: dict[Any, Any]) -> dict[Any, Any]:
