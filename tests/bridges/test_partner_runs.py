@@ -33,7 +33,7 @@ def check_odd(seen):
 def check_loop(transport, seconds, seen):
     print(f"{transport}: {seen['commands']} commands, {1e3 * seen['median']:.2f} ms, {1e3 * seen['p99']:.2f} ms (99 %)")
     assert seen["received"] == seen["sent"] >= 2 * seconds  # no command is lost; a busy computer is late
-    assert seen["commands"] >= 0.9 * seen["sent"]  # of two commands within a step, only the first has a latency
+    assert 0 < seen["commands"] <= seen["sent"]  # of the commands within a step, only the first has a latency
     assert (seen["links"], seen["silences"] <= seconds // 60) == (1, True)
     assert seen["median"] < (0.05 if seconds > 60 else 0.3)  # tests share the processor
 
