@@ -304,8 +304,8 @@ def test_arena_has_people_and_robots_and_names_what_it_lacks(tmp_path):
     assert (trial.robots[0].heading, trial.robots[0].goal.position) == (0.5, (5.0, 5.0))
     for sentence in (
         "lift is a forklift and is left out: people and robots are imported",
-        "the static obstacle 'shelf1' (model shelf) is not imported, since its size is not in the file; it is at (13.0,"
-        " 11.0)",
+        "the static obstacle 'shelf1' (model shelf) is not imported, since its size is not in the file; add its"
+        " outline as <obstacle> around (13.0, 11.0)",
         "'door' (interactive) is not imported",
         "the map 'hall' is not beside the scenario as hall/map.yaml or hall.yaml: the stage has no walls, add them",
     ):
@@ -541,6 +541,53 @@ def test_models_of_a_package_are_found(tmp_path, file, uri, more, middle):
     assert table.mean(axis=0) == pytest.approx(middle)  # the pose of <include> replaces that of the model
     assert np.ptp(table, axis=0) == pytest.approx([1.0, 2.0] if "90" in more else [2.0, 1.0], abs=1e-5)
     assert any("can be moved" in sentence for sentence in done.left_out) == ("false" in more)
+
+
+@pytest.mark.parametrize(
+    ("pose", "middle"),
+    [
+        ("<pose>1 2 0 0 0 0</pose>", (11, 2)),
+        ("<pose relative_to='__model__'>1 2 0 0 0 0</pose>", (11, 2)),
+        ("<pose relative_to='leg'>1 2 0 0 0 0</pose>", (8, 4)),  # the leg is turned by 90 degrees
+        ("<pose relative_to='mark'>1 2 0 0 0 0</pose>", (8, 5)),
+        ("<pose relative_to='hinge'>1 2 0 0 0 0</pose>", (8, 5)),
+        ("<pose frame='leg'>1 2 0 0 0 0</pose>", (8, 4)),
+    ],
+)
+def test_poses_of_gazebo_are_relative_to_what_they_name(tmp_path, pose, middle):
+    box = '<collision name="c">{}<geometry><box><size>2 1 1</size></box></geometry></collision>'
+    world = (
+        "<sdf version='1.9'><world name='w'><frame name='hall'><pose>10 0 0 0 0 0</pose></frame>"
+        "<model name='desk'><static>1</static><pose relative_to='hall'>0 0 0.5 0 0 0</pose>"
+        "<link name='leg'><pose degrees='1'>0 3 0 0 0 90</pose></link>"
+        "<frame name='mark' attached_to='leg'><pose>1 0 0 0 0 0</pose></frame>"
+        "<joint name='hinge' type='fixed'><child>leg</child><pose>1 0 0 0 0 0</pose></joint>"
+        "<link name='top'>{}{}</link></model></world></sdf>"
+    )
+    for text in (world.format(pose, box.format("")), world.format("", box.format(pose))):
+        done = imported(tmp_path, "w.world", text)
+        (top,) = (np.array(obstacle.points) for obstacle in trial_of(done).stage.obstacles)
+        assert top.mean(axis=0) == pytest.approx(middle, abs=1e-6)
+        assert not any("relative" in sentence for sentence in done.left_out)
+    unknown = imported(
+        tmp_path, "w.world", world.format("<pose relative_to='shelf'>1 2 0 0 0 0</pose>", box.format(""))
+    )
+    assert any("is relative to 'shelf', which is not in the same model" in sentence for sentence in unknown.left_out)
+    circle = world.format("<pose relative_to='top'>1 2 0 0 0 0</pose>", box.format(""))
+    with pytest.raises(TrialError, match=r"w.world: line 1: the pose of 'top' is relative to itself"):
+        imported(tmp_path, "w.world", circle)
+
+
+def test_a_malformed_included_model_is_left_out_and_named(tmp_path):
+    (tmp_path / "table").mkdir()
+    (tmp_path / "table" / "model.sdf").write_text("<sdf><model name='table'>\n<link></model></sdf>")
+    done = imported(tmp_path, "hall.world", GAZEBO)
+    left_out = next(sentence for sentence in done.left_out if "'table_1'" in sentence)
+    assert left_out.startswith("<include> of 'table_1' in line 4 is left out: table/model.sdf:2: ")
+    assert left_out.endswith("mend the file, or add its outline as <obstacle>")
+    (tmp_path / "table" / "model.sdf").write_text(TABLE.replace("2 1 1", "2 1"))
+    with pytest.raises(TrialError, match=r"line 1 of table/model.sdf: <box> needs <size> with 3 numbers"):
+        imported(tmp_path, "hall.world", GAZEBO)
 
 
 def test_models_of_gazebo_stand_where_the_saved_state_puts_them(tmp_path):

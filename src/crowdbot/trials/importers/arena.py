@@ -76,7 +76,7 @@ def _trial(scene: ImportedScene, whole: dict[str, Any]) -> ImportedTrial:
         model = str(row.get("model") or row.get("model_path") or "unknown")
         scene.note(
             f"the static obstacle {_named(row, 'obstacle')} (model {model[:40]}) is not imported, since its size is not"
-            f" in the file; it is at {_spot(scene, row, 'pos', 'obstacle')}"
+            f" in the file; add its outline as <obstacle> around {_spot(scene, row, 'pos', 'obstacle')}"
         )
     robots = _rows(scene, whole, "robots")
     if "robot_position" in whole:

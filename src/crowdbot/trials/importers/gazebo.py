@@ -26,6 +26,8 @@ from .scene_parts import ImportedScene, as_number, circle
 LOW, HIGH = 0.1, 1.8
 """Heights [m] between which a solid is in the way of people."""
 MOST_FILES, MOST_DEPTH = 200, 5
+MOST_FRAMES = 100
+"""Longest chain of poses that are relative to each other."""
 MOST_TRIANGLES = 300_000
 """Largest number of triangles of all meshes of a world."""
 WHOLE_TURN = 2.0 * math.pi
@@ -39,6 +41,11 @@ SILENT = {
     "spherical_coordinates", "plugin", "model", "actor", "include", "name", "world", "frame",
 }  # fmt: skip
 """Elements of a world that are imported, or that change no wall and no person."""
+FRAMED = ("link", "frame", "joint", "model")
+"""Elements whose frames the pose of another may be relative to, beside included models."""
+FIXED = np.eye(4)
+Scope = dict[str, Element]
+"""Elements of a model or world by name, whose frames others may name."""
 
 
 def import_gazebo(path: str | Path) -> ImportedTrial:
@@ -85,30 +92,64 @@ class _Reader:
         self.states = {
             part.attributes.get("name", ""): part for state in world.each("state") for part in state.each("model")
         }
-        ground = np.eye(4)
+        scope = _scope(world)
         for part in world.children:
             if part.tag == "model":
-                self._model(part, ground, 0, placed=self._saved(part.attributes.get("name", "")))
+                self._model(part, FIXED, 0, scope, placed=self._saved(part.attributes.get("name", "")))
             elif part.tag == "include":
-                self._include(part, ground, 0)
+                self._include(part, FIXED, 0, scope)
         for part in world.each("actor"):
             self._actor(part)
         crowd: CrowdModel = SocialForce()
         self.scene.note("actors do not avoid anybody in Gazebo: here people have the social force model")
         return self.scene.trial(crowd=crowd)
 
-    def _pose(self, part: Element) -> Floats:
-        """Frame ``[4, 4]`` of an element in its parent; a frame of another element is noted."""
+    def _pose(self, part: Element, scope: Scope | None = None, above: Floats = FIXED) -> Floats:
+        """Frame ``[4, 4]`` of an element in the model, or world, whose elements are ``scope``.
+
+        ``above`` is the frame of its parent element there, from which SDF counts a pose that names nothing else.
+        """
         pose = next(iter(part.each("pose")), None)
+        other = _other(pose)
+        if pose is None or other in ("", "world", "__model__"):
+            return (FIXED if other else above) @ self._numbers_of(pose)
+        base = self._frame_of(other, scope or {}, ())
+        if base is None:
+            self.scene.note(
+                f"the pose in {self._where(pose)} is relative to {other[:40]!r}, which is not in the same model, and is"
+                " read in its parent"
+            )
+            base = above
+        return base @ self._numbers_of(pose)
+
+    def _frame_of(self, name: str, scope: Scope, before: tuple[str, ...]) -> Floats | None:
+        """Frame of a named element in its model; None if there is none of the name, or its file has its pose."""
+        part = scope.get(name)
+        if part is None or (part.tag == "include" and not part.each("pose")):
+            return None
+        if name in before or len(before) > MOST_FRAMES:
+            raise self.scene.error(
+                f"{self._where(part)}: the pose of {name[:40]!r} is relative to itself, or through more than"
+                f" {MOST_FRAMES} others; say its place in the model"
+            )
+        pose = next(iter(part.each("pose")), None)
+        child = next((item.stray.strip() for item in part.each("child")), "") if part.tag == "joint" else ""
+        other = _other(pose) or part.attributes.get("attached_to", "") or child
+        if not other or other in ("world", "__model__"):
+            return self._numbers_of(pose)
+        base = self._frame_of(other, scope, (*before, name))
+        return None if base is None else base @ self._numbers_of(pose)
+
+    def _numbers_of(self, pose: Element | None) -> Floats:
+        """Frame ``[4, 4]`` of a <pose>."""
         if pose is None:
-            return np.eye(4)
-        other = pose.attributes.get("relative_to") or pose.attributes.get("frame")
-        if other and other not in ("world", "__model__"):
-            self.scene.note(f"the pose in line {pose.line} is relative to {other[:40]!r}, and is read in its parent")
+            return FIXED
         words = pose.stray.split() or ["0"] * 6
         if len(words) != 6:
-            raise self.scene.error(f"line {pose.line}: <pose> has {len(words)} numbers, it needs x y z roll pitch yaw")
-        values = [as_number(word, f"line {pose.line}: <pose>") for word in words]
+            raise self.scene.error(
+                f"{self._where(pose)}: <pose> has {len(words)} numbers, it needs x y z roll pitch yaw"
+            )
+        values = [as_number(word, f"{self._where(pose)}: <pose>") for word in words]
         if pose.attributes.get("degrees", "false") in ("true", "1"):
             values[3:] = [math.radians(value) for value in values[3:]]
         return np.asarray(frame(tuple(values[:3]), roll_pitch_yaw(*values[3:])), dtype=np.float64)
@@ -142,7 +183,7 @@ class _Reader:
                     continue
         return None
 
-    def _include(self, part: Element, parent: Floats, depth: int) -> None:
+    def _include(self, part: Element, parent: Floats, depth: int, scope: Scope) -> None:
         """Add an included model whose file is beside the world."""
         uri = next((item.stray.strip() for item in part.each("uri")), "")
         if uri.startswith(("https://", "http://")):  # models of Gazebo Fuel, perhaps with a version
@@ -164,11 +205,18 @@ class _Reader:
                 " copy its folder there, or add its outline as <obstacle>"
             )
             return
+        try:
+            root = parse_trial_xml(read_trial_bytes(found), f"{found.parent.name}/{found.name}")
+        except InputError as error:
+            self.scene.note(
+                f"<include> of {name[:60]!r} in {self._where(part)} is left out: {error}; mend the file, or add its"
+                " outline as <obstacle>"
+            )
+            return
         here, self.here = self.here, found
-        root = parse_trial_xml(read_trial_bytes(found), str(found))
         placed = (self._saved(name) if depth == 0 else None) or (part if part.each("pose") else None)
         for inner in root.each("model"):
-            self._model(inner, parent, depth + 1, name, placed, next(iter(part.each("static")), None))
+            self._model(inner, parent, depth + 1, scope, name, placed, next(iter(part.each("static")), None))
         self.here = here
 
     def _model(
@@ -176,15 +224,19 @@ class _Reader:
         model: Element,
         parent: Floats,
         depth: int,
+        scope: Scope,
         name: str = "",
         placed: Element | None = None,
         static_override: Element | None = None,
     ) -> None:
-        """Add the collisions of a model and of the models in it; another element may override its pose, as in SDF."""
+        """Add the collisions of a model and of the models in it; another element may override its pose, as in SDF.
+
+        Poses of the model and of that element are in the frame ``parent`` with the elements ``scope``.
+        """
         name = (name or _name(model)).strip("'")[:60]
         flag = static_override or next(iter(model.each("static")), None)
         static = flag is not None and flag.stray.strip() in ("true", "1")
-        place = parent @ self._pose(model if placed is None else placed)
+        place, inside = parent @ self._pose(model if placed is None else placed, scope), _scope(model)
         joints = [item for item in model.each("joint") if item.attributes.get("type") != "fixed"]
         if joints and not static:
             at = f'x="{place[0, 3]:.4g}" y="{place[1, 3]:.4g}"'
@@ -200,18 +252,18 @@ class _Reader:
             raise self.scene.error(f"more than {MOST_DEPTH} levels of models are too many")
         before = len(self.scene.obstacles) + len(self.scene.walls)
         for link in model.each("link"):
-            at_link = place @ self._pose(link)
+            at_link = self._pose(link, inside)
             if not link.each("collision") and link.each("visual"):
                 self.scene.note(
                     f"the <visual> of the model {name!r} in {self._where(link)} is left out: it has no <collision>, so"
                     " nothing collides with it in Gazebo"
                 )
             for k, collision in enumerate(link.each("collision")):
-                self._collision(name, k, collision, at_link @ self._pose(collision))
+                self._collision(name, k, collision, place @ self._pose(collision, inside, at_link))
         for inner in model.each("model"):
-            self._model(inner, place, depth + 1)
+            self._model(inner, place, depth + 1, inside)
         for inner in model.each("include"):
-            self._include(inner, place, depth)
+            self._include(inner, place, depth, inside)
         if not static and len(self.scene.obstacles) + len(self.scene.walls) > before:
             self.scene.note(f"the model {name!r} can be moved in Gazebo, and is fixed here")
 
@@ -287,7 +339,7 @@ class _Reader:
             for point in shape.each("point"):
                 words = point.stray.split()
                 if len(words) != 2:
-                    raise self.scene.error(f"line {point.line}: <point> needs x and y")
+                    raise self.scene.error(f"{self._where(point)}: <point> needs x and y")
                 outline.append((self._number(words[0], point), self._number(words[1], point)))
             height = self._numbers(shape, "height", 1)[0]
             return _prism(outline, 0.0, height) if len(outline) >= 3 else None
@@ -302,16 +354,16 @@ class _Reader:
         return None
 
     def _number(self, word: str, part: Element) -> float:
-        return as_number(word, f"line {part.line}: <{part.tag[:40]}>")
+        return as_number(word, f"{self._where(part)}: <{part.tag[:40]}>")
 
     def _numbers(self, shape: Element, tag: str, count: int, negative: bool = False) -> list[float]:
         part = next(iter(shape.each(tag)), None)
         words = [] if part is None else part.stray.split()
         if part is None or len(words) != count:
-            raise self.scene.error(f"line {shape.line}: <{shape.tag[:40]}> needs <{tag}> with {count} numbers")
+            raise self.scene.error(f"{self._where(shape)}: <{shape.tag[:40]}> needs <{tag}> with {count} numbers")
         values = [self._number(word, part) for word in words]
         if min(values) < 0.0 and not negative:
-            raise self.scene.error(f"line {part.line}: <{tag}> must not be below 0")
+            raise self.scene.error(f"{self._where(part)}: <{tag}> must not be below 0")
         return values
 
     def _actor(self, actor: Element) -> None:
@@ -364,6 +416,18 @@ class _Reader:
             as_number(time or "nothing", f"line {part.line}: <time>"), float(at[0, 3]),
             float(at[1, 3]), float(np.arctan2(at[1, 0], at[0, 0])),
         )  # fmt: skip
+
+
+def _other(pose: Element | None) -> str:
+    """Name of what a pose is relative to; empty if its parent."""
+    return "" if pose is None else pose.attributes.get("relative_to") or pose.attributes.get("frame") or ""
+
+
+def _scope(parent: Element) -> Scope:
+    """Elements of a model or world whose frames others may name."""
+    named = [(part.attributes.get("name", ""), part) for part in parent.children if part.tag in FRAMED]
+    own = [("".join(item.stray.strip() for item in part.each("name")), part) for part in parent.each("include")]
+    return {name: part for name, part in (*own, *named) if name}
 
 
 def _robot_part(model: Element, joints: Sequence[Element]) -> str:
