@@ -1,4 +1,4 @@
-"""Draw people for the gallery: ``python tools/people.py docs/gallery/people [NAME...]``."""
+"""Draw people for the gallery: ``python tools/people_pictures.py docs/gallery/people [NAME...]``."""
 
 from __future__ import annotations
 
