@@ -213,12 +213,11 @@ class CloudClusters(Detector):
             )
 
     def detect(self, reading: Reading, walls: Walls | None = None) -> Detections:
-        """Return the people in a point cloud."""
+        """Return the people in a point cloud or depth image."""
         self.check(reading)
-        assert isinstance(reading, PointCloud)
         pose = planar_pose(reading.pose)
         origin, heading = np.ascontiguousarray(pose.position[0]), float(pose.heading[0])
-        ends = reading.points(in_world=True)[0].reshape(-1, 3)
+        ends, coverage = self._read(reading, origin, heading)
         away = np.hypot(ends[:, 0] - origin[0], ends[:, 1] - origin[1])
         use = np.isfinite(away) & (away <= self.max_range) & (ends[:, 2] >= self.low) & (ends[:, 2] <= self.high)
         points = np.ascontiguousarray(ends[use])
@@ -226,7 +225,6 @@ class CloudClusters(Detector):
             kept = np.ones(len(points), dtype=np.bool_)
             hide_walls(np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(walls.segments()), self.margin, kept)
             points = points[kept]
-        coverage = self._coverage(reading, ends, origin, heading)
         place, beams = self._people(points, origin)
         covariance = np.tile(self.deviation**2 * np.eye(2), (len(place), 1, 1))
         return Detections(float(np.max(reading.time)), place, covariance, beams, coverage)
@@ -263,15 +261,19 @@ class CloudClusters(Detector):
             place[k] = origin + depth * unit + side * np.array([-unit[1], unit[0]])
         return place
 
-    def _coverage(self, reading: PointCloud, ends: Floats, origin: Floats, heading: float) -> Coverage:
-        """Return what the scanner could see: of each column, the farthest beam between the heights of people."""
-        azimuth = reading.azimuth
+    def _read(self, reading: Reading, origin: Floats, heading: float) -> tuple[Floats, Coverage]:
+        """Return the points ``[N, 3]`` in the world and what the sensor could see.
+
+        That is of each column the farthest beam between the heights of people.
+        """
+        assert isinstance(reading, PointCloud)
+        ends, azimuth = reading.points(in_world=True)[0].reshape(-1, 3), reading.azimuth
         step = float(azimuth[1] - azimuth[0]) if len(azimuth) > 1 else 2.0 * math.pi
         rings = len(reading.elevation)
         away = np.hypot(ends[:, 0] - origin[0], ends[:, 1] - origin[1]).reshape(rings, -1)
         at_body = (ends[:, 2].reshape(rings, -1) >= self.low) & np.isfinite(away)
         far = np.where(at_body, away, np.where(np.isposinf(reading.ranges[0]), self.max_range, 0.0))
-        return Coverage(origin, heading + float(azimuth[0]), step, np.minimum(far.max(axis=0), self.max_range))
+        return ends, Coverage(origin, heading + float(azimuth[0]), step, np.minimum(far.max(axis=0), self.max_range))
 
 
 def _label(column: Ints, side: int) -> Ints:
@@ -335,28 +337,10 @@ class DepthClusters(CloudClusters):
         super().__post_init__()
         check_number("DepthClusters", "stride", self.stride, min=1, whole=True)
 
-    def detect(self, reading: Reading, walls: Walls | None = None) -> Detections:
-        """Return the people in a depth image."""
-        self.check(reading)
+    def _read(self, reading: Reading, origin: Floats, heading: float) -> tuple[Floats, Coverage]:
+        # what the camera could see: in each direction, the farthest pixel of the middle rows
         assert isinstance(reading, DepthImage)
-        pose = planar_pose(reading.pose)
-        origin, heading = np.ascontiguousarray(pose.position[0]), float(pose.heading[0])
-        image = reading.points(in_world=True)[0, :: self.stride, :: self.stride]
-        ends = image.reshape(-1, 3)
-        away = np.hypot(ends[:, 0] - origin[0], ends[:, 1] - origin[1])
-        use = np.isfinite(away) & (away <= self.max_range) & (ends[:, 2] >= self.low) & (ends[:, 2] <= self.high)
-        points = np.ascontiguousarray(ends[use])
-        if walls is not None and len(walls):
-            kept = np.ones(len(points), dtype=np.bool_)
-            hide_walls(np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(walls.segments()), self.margin, kept)
-            points = points[kept]
-        place, count = self._people(points, origin)
-        covariance = np.tile(self.deviation**2 * np.eye(2), (len(place), 1, 1))
-        view = self._view(reading, origin, heading)
-        return Detections(float(np.max(reading.time)), place, covariance, count, view)
-
-    def _view(self, reading: DepthImage, origin: Floats, heading: float) -> Coverage:
-        """Return what the camera could see: in each direction, the farthest pixel of the middle rows."""
+        ends = reading.points(in_world=True)[0, :: self.stride, :: self.stride].reshape(-1, 3)
         lens, depth = reading.lens, reading.depth[0]
         half = max(1, lens.height // 8)
         middle = depth[lens.height // 2 - half : lens.height // 2 + half + 1]
@@ -366,7 +350,7 @@ class DepthClusters(CloudClusters):
         even = np.linspace(bearing[0], bearing[-1], lens.width)
         reach = np.minimum(np.interp(even, bearing, distance), self.max_range)
         step = float(even[1] - even[0]) if len(even) > 1 else 2.0 * math.pi
-        return Coverage(origin, heading + float(even[0]), step, reach)
+        return ends, Coverage(origin, heading + float(even[0]), step, reach)
 
 
 LONE_LEG = 0.08
