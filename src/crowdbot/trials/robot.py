@@ -441,7 +441,7 @@ class RobotSpec:
             )
         if self.pose is not None and not isinstance(self.navigator, ExternalNavigator):
             raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
-        forecasts = forecast_problems(self.predictor, self.tracks, self.control_period)
+        forecasts = forecast_problems(self.predictor, self.tracks, self.control_period, self.navigator)
         others = (*people_problems(self.people, self.sensors), *rider_problems(self.rider_kind, self.body.seat))
         for problem in (*safety_problems(self.safety, self.navigator), *forecasts, *others):
             raise InputError(problem)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core import Twist, check_number
+from crowdbot.core import InputError, Twist, check_number
+from crowdbot.data import Forecast
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
 from crowdbot.navigation.wall_arrays import wall_arrays
 from crowdbot.typing import Floats
 
 from .clearance import robot_wall_gaps, wall_gaps
-from .plan_costs import contact_probability, progress_cost, space_lack
+from .plan_costs import along_variance, contact_probability, progress_cost, space_lack
 from .rollout import roll_out
 
 STEP = 0.2
@@ -23,6 +25,27 @@ WALKING = 0.5
 """Speed [m/s] from which the uncertainty of a person grows fully."""
 WALL = 100.0
 """Cost of a full radius in a wall [s]."""
+TIE = 1e-6
+"""Difference of probabilities below which plans are equally likely to touch somebody."""
+
+
+class _People(NamedTuple):
+    """Forecast of N people within reach in K futures and T steps."""
+
+    place: Floats
+    """``[K, T, N, 2]`` [m]."""
+    radius: Floats
+    """``[N]`` [m]."""
+    existence: Floats
+    """``[N]`` probability that a person exists."""
+    weight: Floats
+    """``[K]`` of the futures of all people together, sums to 1."""
+    share: Floats
+    """``[K, N]`` of the futures of each person, sums to 1 over K."""
+    sigma: Floats
+    """``[T, N]`` standard deviation of the clearance without the covariance [m]."""
+    covariance: Floats | None
+    """``[K, T, N, 2, 2]`` [m^2] around each future, or None."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +57,24 @@ class MPCNavigator(Navigator):
     plan, in seconds, is the sum of
 
     * progress: ``(mean + last remaining path) / speed`` over the horizon,
-    * ``risk`` times the sum over people of the largest probability of contact, ``Phi(-(gap - margin) / sigma)`` with
-      ``sigma = uncertainty + growth t min(1, pace / 0.5 m/s)``, times the probability that the person exists, as a
-      weighted mean over the futures of the forecast,
+    * ``risk`` times the sum over people of the probability of contact: the weighted mean over the futures of the
+      largest ``Phi(-(gap - margin) / sigma)``, times the probability that the person exists,
     * ``comfort`` times the mean lack of ``space`` to people, as a share, whether they exist or not: otherwise the robot
       would turn aside too late, and stop before somebody who hardly exists,
     * ``smoothness`` times the change of the motion in the first step, as shares of the largest speed and turn rate,
     * the depth in walls and their margin.
+
+    The standard deviation of a clearance is ``sigma = uncertainty + growth t min(1, pace / 0.5 m/s)``. With
+    ``mixture``, it is ``sqrt(uncertainty^2 + n' S n)``: S is the covariance around each future of
+    :meth:`crowdbot.data.Forecast.mixture`, n the direction from the person to the robot, and the futures are weighted
+    for each person. The disc of a contact lies in the half-plane at its edge across n, so this is a bound from above.
+
+    With ``chance`` below 1, a plan whose probability of contact with a person is above ``chance`` is taken only if each
+    other plan is above it, too, or touches a wall; then the plan of the least such probability.
+
+    Sources: the half-plane of Zhu, Alonso-Mora 2019, doi:10.1109/LRA.2019.2893494; the sum over the components of a
+    mixture of Ren, Ahn, Kamgarpour 2023, doi:10.1109/LCSYS.2022.3186269. Difference: plans of a lattice are tested, no
+    optimization problem is solved.
 
     The same observation gives the same decision: the lattice is fixed, and the forecast has its own random stream from
     the time.
@@ -57,9 +91,12 @@ class MPCNavigator(Navigator):
         smoothness: cost of a full change of the twist [s].
         wall_margin: clearance to walls that is kept [m].
         samples: futures asked of the predictor.
+        mixture: whether the predictor of the trial gives the uncertainty of the people it predicts.
+        chance: largest probability of contact with each person; 1 for any.
 
     Raises:
-        InputError: a number is out of its range.
+        InputError: a number is out of its range; in a decision, ``mixture`` without a predictor or without covariances
+            in its forecast.
 
     >>> from crowdbot.navigation import DriveLimits, VisiblePeople
     >>> person = VisiblePeople(np.array([[3.0, 0.1]]), np.array([[-1.0, 0.0]]), np.array([0.25]))
@@ -81,6 +118,8 @@ class MPCNavigator(Navigator):
     smoothness: float = 0.1
     wall_margin: float = 0.1
     samples: int = 1
+    mixture: bool = False
+    chance: float = 1.0
 
     def __post_init__(self) -> None:
         for name, unit in {"speed": "m/s", "horizon": "s", "uncertainty": "m", "space": "m"}.items():
@@ -89,42 +128,60 @@ class MPCNavigator(Navigator):
         for name, unit in others.items():
             check_number("MPCNavigator", name, getattr(self, name), unit, min=0.0)
         check_number("MPCNavigator", "samples", self.samples, min=1, whole=True)
+        check_number("MPCNavigator", "chance", self.chance, exclusive_min=0.0, max=1.0)
+        if not isinstance(self.mixture, bool):
+            raise InputError(f"MPCNavigator: mixture = {self.mixture!r} must be True or False")
 
     def act(self, observation: Observation) -> Twist:
         """Return the first twist of the cheapest plan."""
         steps = max(2, round(self.horizon / STEP))
         rollout = roll_out(observation, self.speed, steps, STEP)
         cost = progress_cost(rollout, min(self.speed, observation.limits.max_speed), self.smoothness)
-        cost += self._people(observation, rollout.position)
-        cost += self._walls(observation, rollout.position, rollout.heading)
+        near, contact = self._people(observation, rollout.position)
+        walls, depth = self._walls(observation, rollout.position, rollout.heading)
+        cost += near
+        cost += walls
+        if self.chance < 1.0:
+            above = np.maximum(contact - self.chance, 0.0)
+            above[depth > max(self.wall_margin, depth.min())] = math.inf  # no way out through a wall
+            cost[above > above.min() + TIE] = math.inf
         return Twist(*rollout.first[int(np.argmin(cost))].tolist())
 
-    def _people(self, observation: Observation, position: Floats) -> Floats:
-        """Return the cost ``[C]`` of people near the paths ``[C, T, 2]``."""
-        T, total = position.shape[1], np.zeros(len(position))
-        places, radius, weight, pace, there = self._forecast(observation, T)
-        sigma = self.uncertainty + self.growth * STEP * np.arange(1, T + 1)[:, None] * pace
-        for future, share in zip(places, weight.tolist(), strict=True):
-            away = position[:, :, None] - future
-            gap = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2) - radius - observation.radius
-            meets = contact_probability(gap, self.margin, sigma)
+    def _people(self, observation: Observation, position: Floats) -> tuple[Floats, Floats]:
+        """Return the cost ``[C]`` of people near the paths ``[C, T, 2]``, and the largest probability of contact."""
+        people = self._forecast(observation, position.shape[1])
+        total, contact = np.zeros(len(position)), np.zeros((len(position), len(people.radius)))
+        for k, place in enumerate(people.place):
+            away = position[:, :, None] - place
+            gap = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2) - people.radius - observation.radius
+            sigma = people.sigma
+            if people.covariance is not None:
+                sigma = np.sqrt(sigma**2 + along_variance(away, people.covariance[k]))
+            contact += people.share[k] * contact_probability(gap, self.margin, sigma)
             lack = space_lack(gap, self.space).max(axis=2, initial=0.0)
-            total += share * (self.risk * (there * meets).sum(axis=1) + self.comfort * lack.mean(axis=1))
-        return total
+            total += people.weight[k] * (self.comfort * lack.mean(axis=1))
+        contact *= people.existence
+        return total + self.risk * contact.sum(axis=1), contact.max(axis=1, initial=0.0)
 
-    def _forecast(self, observation: Observation, steps: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Return places ``[K, T, N, 2]`` of the people within reach, radii ``[N]``, weights ``[K]``, shares ``[N]``.
-
-        The shares are those of the growth of the uncertainty: who stands is expected to stay. The last value are the
-        probabilities ``[N]`` that the people exist.
-        """
+    def _forecast(self, observation: Observation, steps: int) -> _People:
+        """Return the people within reach; who stands is expected to stay, so the uncertainty grows with the pace."""
         people = observation.people
-        times = STEP * np.arange(1, steps + 1)
+        times: Floats = STEP * np.arange(1.0, steps + 1.0)
         places = (people.position + times[:, None, None] * people.velocity)[None]
-        weight = np.ones(1)
+        weight, spread = np.ones(1), None
+        pace = np.minimum(np.hypot(*people.velocity.T) / WALKING, 1.0)
+        if self.mixture and (observation.predictor is None or observation.tracks is None):
+            raise InputError(
+                'MPCNavigator: mixture = True, but the robot has no predictor; add <predictor type="anchor-net"/>'
+                ' and tracks="3.2" to it, or leave mixture out'
+            )
+        share = np.ones((1, len(people)))
         if observation.predictor is not None and observation.tracks is not None and len(people):
             forecast = observation.forecast(seconds=self.horizon, samples=self.samples)
             places, weight = np.repeat(places, forecast.samples, axis=0), forecast.weight[0] / forecast.weight[0].sum()
+            share = np.repeat(weight[:, None], len(people), axis=1)
+            mixture = self._mixture(forecast) if self.mixture else None
+            spread = None if mixture is None else np.zeros((*places.shape, 2))
             knots = forecast.dt * np.arange(forecast.steps + 1)
             column = {int(id_): k for k, id_ in enumerate(observation.tracks.ids)}
             for a, item in enumerate(people.ids.tolist()):
@@ -133,20 +190,46 @@ class MPCNavigator(Navigator):
                 for s, c in np.ndindex(forecast.samples, 2):
                     track = np.append(people.position[a, c], forecast.position[0, s, :, k, c])
                     places[s, :, a, c] = np.interp(times, knots, track)
+                if mixture is not None and spread is not None:
+                    share[:, a], pace[a] = mixture[0][:, k], 0.0
+                    spread[:, :, a] = _between(times / forecast.dt, mixture[1][:, :, k])
         reach = self.speed * self.horizon + observation.radius + self.space + 1.0
         closest = np.hypot(*np.moveaxis(places - observation.position, -1, 0)).min(axis=(0, 1)) - people.radius
         near = closest < reach
-        pace = np.minimum(np.hypot(*people.velocity[near].T) / WALKING, 1.0)
-        return places[:, :, near], people.radius[near], weight, pace, people.existence[near]
+        sigma = self.uncertainty + self.growth * STEP * np.arange(1, steps + 1)[:, None] * pace[near]
+        return _People(
+            places[:, :, near], people.radius[near], people.existence[near], weight, share[:, near], sigma,
+            None if spread is None else spread[:, :, near],
+        )  # fmt: skip
 
-    def _walls(self, observation: Observation, position: Floats, heading: Floats) -> Floats:
-        """Return the cost ``[C]`` of paths ``[C, T, 2]`` with headings ``[C, T]`` in walls or in their margin."""
+    def _mixture(self, forecast: Forecast) -> tuple[Floats, Floats]:
+        """Return the weights ``[K, A]`` and covariances ``[K, T, A, 2, 2]`` of a forecast."""
+        try:
+            mixture = forecast.mixture()
+        except InputError as error:
+            raise InputError(
+                f"MPCNavigator: mixture = True, {error}; take a predictor with covariances, such as anchor-net or"
+                " kalman, or leave mixture out"
+            ) from None
+        return mixture.weight[0], mixture.covariance[0]
+
+    def _walls(self, observation: Observation, position: Floats, heading: Floats) -> tuple[Floats, Floats]:
+        """Return the cost and the largest depth [m] of paths ``[C, T, 2]`` in walls or their margin, ``[C]`` each."""
         segments, here = wall_arrays(observation.walls).segments, observation.position[None]
         reach = self.speed * self.horizon + self.wall_margin
         near = [wall_gaps(here, row[None], observation.radius)[0] < reach for row in segments]
         reached = segments[np.array(near, dtype=np.bool_)]
         gap = robot_wall_gaps(observation, position.reshape(-1, 2), heading.reshape(-1), reached)
         if not math.isfinite(gap[0]):
-            return np.zeros(len(position))
+            return np.zeros(len(position)), np.zeros(len(position))
         depth = np.maximum(self.wall_margin - gap, 0.0).reshape(position.shape[:2])
-        return np.asarray(WALL / observation.radius * (depth.max(axis=1) + depth.mean(axis=1)))
+        most = depth.max(axis=1)
+        return WALL / observation.radius * (most + depth.mean(axis=1)), most
+
+
+def _between(row: Floats, covariance: Floats) -> Floats:
+    """Return covariances ``[K, T, 2, 2]`` at rows, from those at rows 1, 2, ... and 0 at row 0, linear in between."""
+    known = np.concatenate([np.zeros_like(covariance[:, :1]), covariance], axis=1)
+    low = np.minimum(row.astype(np.int64), known.shape[1] - 2)
+    part = np.minimum(row - low, 1.0)[:, None, None]
+    return np.asarray((1.0 - part) * known[:, low] + part * known[:, low + 1])

@@ -39,6 +39,21 @@ def contact_probability(gap: Floats, margin: float, sigma: Floats) -> Floats:
     return np.asarray(1.0 / (1.0 + np.exp(steep.min(axis=1))))
 
 
+def along_variance(away: Floats, covariance: Floats) -> Floats:
+    """Return the variance ``[..., N]`` [m^2] of the distance of people along the lines of sight to a robot.
+
+    Args:
+        away: ``[..., N, 2]`` [m] from the people to the robot.
+        covariance: ``[..., N, 2, 2]`` [m^2] of the positions of the people.
+
+    >>> along_variance(np.array([[3.0, 0.0], [0.0, 2.0]]), np.diag([0.04, 0.01])).tolist()
+    [0.04, 0.01]
+    """
+    x, y = away[..., 0], away[..., 1]
+    own = x * x * covariance[..., 0, 0] + 2.0 * x * y * covariance[..., 0, 1] + y * y * covariance[..., 1, 1]
+    return np.asarray(np.maximum(own, 0.0) / np.maximum(x * x + y * y, 1e-18))
+
+
 def space_lack(gap: Floats, space: float) -> Floats:
     """Return the lack of a wanted ``space`` [m] as a share, for clearances ``gap`` [m] of any shape.
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import InputError, kebab_case
+from crowdbot.navigation import MPCNavigator, Navigator
 from crowdbot.prediction import WEIGHTS_FIELDS, Predictor
 from crowdbot.trials.fields import attribute, check, mounted_field, quote_value
 from crowdbot.trials.files.trial_files import resolve_file
@@ -100,19 +101,27 @@ class RobotPredictor:
         object.__setattr__(self, "predictor", dataclasses.replace(self.predictor, **{name: default}))
 
 
-def forecast_problems(predictor: RobotPredictor | None, tracks: float | None, control_period: float) -> Iterator[str]:
+def forecast_problems(
+    predictor: RobotPredictor | None, tracks: float | None, control_period: float, navigator: Navigator | None = None
+) -> Iterator[str]:
     """Yield why a robot cannot use its predictor.
 
     Args:
         predictor: the predictor, or None.
         tracks: time span of the tracks of the robot [s], or None.
         control_period: time between their rows [s].
+        navigator: navigator of the robot.
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> list(forecast_problems(RobotPredictor(predictor=ConstantVelocity()), None, 0.1))
     ['has <predictor> but no tracks to predict from; add tracks="4"']
     """
     if predictor is None:
+        if isinstance(navigator, MPCNavigator) and navigator.mixture:
+            yield (
+                'has <navigator type="mpc" mixture="true"/> but no predictor; add tracks="3.2" and'
+                ' <predictor type="anchor-net" step="0.4"/>'
+            )
         return
     if tracks is None:
         yield 'has <predictor> but no tracks to predict from; add tracks="4"'
