@@ -20,7 +20,7 @@ import numpy as np
 from crowdbot.core import kebab_case
 from crowdbot.recording import run
 from crowdbot.simulation import Episode
-from crowdbot.trials import PRESETS, Crowds, Trial, builtin_trials, load_trial, parse_trial, trial_xml
+from crowdbot.trials import PRESETS, UNSIMULATED, Crowds, Trial, builtin_trials, load_trial, parse_trial, trial_xml
 
 SECONDS = 20.0
 PIXELS, DPI = 320, 100
@@ -138,8 +138,8 @@ def page(file: Path) -> None:
         "",
         "Run a trial with `crowdbot run NAME`, change its parameters with `--set NAME=VALUE`, and list them with",
         "`crowdbot list trials NAME`. The last column gives the names of other simulators and the parameters",
-        "with which the trial equals theirs. P&G: Francis et al. 2025 (doi:10.1145/3700599). CrowdNav, social-jym,",
-        "UMANS, SEAN and RVO2 are simulators.",
+        "with which the trial equals theirs. CrowdNav, social-jym, UMANS, SEAN and RVO2 are simulators; the",
+        "[scenarios of Francis et al.](#scenarios-of-francis-et-al) have cards.",
         "",
         "Trials that reproduce a benchmark or the CrowdBot challenge keep its crowd model, `orca`; in others, people",
         "walk by the preset `people`. `--set model=orca` gives the crowd that these trials had before; for",
@@ -155,6 +155,7 @@ def page(file: Path) -> None:
         options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
         also = "" if preset is None else preset.also.replace("; ", "<br>")
         lines.append(f"| **{name}**<br>{trial.about} | ![{name}](trials/{name}.png) | {crowd} | {options} | {also} |")
+    lines += scenarios()
     lines += [
         "",
         "## Trials from recordings",
@@ -171,6 +172,30 @@ def page(file: Path) -> None:
         "`python tools/long_trial.py DIR` prints its speed against real time, and the memory at quarters of the run.",
     ]
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def scenarios() -> list[str]:
+    """Return the lines of the section with the cards of scenarios."""
+    lines = [
+        "",
+        "## Scenarios of Francis et al.",
+        "",
+        "Names are those of Table 3 and Figure 7 of Francis et al. 2025, Principles and guidelines for evaluating",
+        "social robot navigation algorithms (doi:10.1145/3700599); geometry, numbers and texts are our own.",
+        "`crowdbot list scenarios` prints them, `crowdbot list trials NAME` the card of a trial.",
+        "[Metrics](../reference/metrics.md) has the names of their metrics.",
+        "",
+        "| scenario | trial | setup | intended behaviour of the robot | success | metrics of quality | not shown |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    rows = {
+        card.name: [f"`{card.command(name)}`", card.setup, card.robot, card.success,
+                    ", ".join(f"`{metric}`" for metric in card.metrics), card.lacks]
+        for name, preset in PRESETS.items()
+        for card in preset.cards
+    }  # fmt: skip
+    rows |= {name: ["not simulated", "", "", "", "", why] for name, why in UNSIMULATED.items()}
+    return [*lines, *(f"| **{name}** | {' | '.join(cells)} |" for name, cells in sorted(rows.items()))]
 
 
 if __name__ == "__main__":

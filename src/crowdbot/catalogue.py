@@ -49,6 +49,7 @@ def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
     """
     listings = {
         "trials": _trials,
+        "scenarios": _scenarios,
         "experiments": _experiments,
         "robots": _robots,
         "humans": _humans,
@@ -119,6 +120,15 @@ def _trials() -> dict[str, str]:
     from crowdbot.trials import trial_titles
 
     return trial_titles()
+
+
+def _scenarios() -> dict[str, str]:
+    """Return the scenarios of Francis et al. 2025 by name: the trial with its options, or why there is none."""
+    from crowdbot.trials import PRESETS, UNSIMULATED
+
+    cards = {card.name: (name, card) for name, preset in PRESETS.items() for card in preset.cards}
+    simulated = {key: f"{card.command(name)}: {card.setup}" for key, (name, card) in cards.items()}
+    return dict(sorted({**simulated, **{key: f"not simulated: {why}" for key, why in UNSIMULATED.items()}}.items()))
 
 
 def _experiments() -> dict[str, str]:

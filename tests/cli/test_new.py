@@ -153,7 +153,13 @@ def test_the_parameters_of_a_builtin_trial_are_listed(capsys):
     options = json.loads(capsys.readouterr().out)["intersection"]
     assert {"density", "angle", "delay", "model", "navigator", "robot", "reactive", "seed"} <= set(options)
     assert main(["list", "trials", "intersection"]) == 0
-    assert "people in the side corridor" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "people in the side corridor" in said
+    assert "Intersection No Gesture (Francis et al. 2025" in said
+    assert main(["list", "scenarios", "--json"]) == 0
+    scenarios = json.loads(capsys.readouterr().out)["scenarios"]
+    assert scenarios["Narrow Hallway"].startswith("frontal --set width=1.2: ")
+    assert scenarios["Intersection Gesture Wait"].startswith("not simulated: ")
     assert main(["run", "intersection", "--set", "density=0.5", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] in ("success", "collision", "timeout")
 

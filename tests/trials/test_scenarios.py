@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import TrialError
+from crowdbot.metrics import metric_table
 from crowdbot.models import SocialForce
 from crowdbot.navigation import Straight
 from crowdbot.recording import run
@@ -19,6 +20,7 @@ from crowdbot.trials import (
     FLOWS,
     PRESETS,
     SIZES,
+    UNSIMULATED,
     builtin_trials,
     check_trial,
     load_trial,
@@ -32,7 +34,7 @@ LISTED = """
     passing-group circle-crossing dense-circle square-crossing one-way-with one-way-against two-way perpendicular-flow
     crossing-flows bottleneck static-crowd random-goals density-ladder leading pedestrian-obstruction down-path
     parallel-walk object-handover delayed-circle circle-with-standing corner-traffic block four-blocks one-against-ten
-    crowd-against-crowd
+    crowd-against-crowd entering-room exiting-room exiting-elevator crash-cart robot-crowding
 """
 QUICK = [
     name for name in LISTED.split() if name not in ("one-way-with", "one-way-against", "two-way", "density-ladder")
@@ -45,6 +47,36 @@ def test_the_list_of_scenarios_is_complete() -> None:
     flows = {f"challenge-{kind}-{size}" for kind in FLOWS for size in SIZES}
     assert challenge == flows | {"challenge-alone"}
     assert len(challenge) == 21
+
+
+FRANCIS = """
+    Frontal Approach, Pedestrian Obstruction, Pedestrian Overtaking, Robot Overtaking, Down Path, Intersection
+    No Gesture, Intersection Gesture Wait, Intersection Gesture Proceed, Blind Corner, Narrow Hallway, Narrow
+    Doorway, Entering Room, Exiting Room, Entering Elevator, Exiting Elevator, Join Group, Leave Group,
+    Following, Leading, Accompanying Peer, Crowd Navigation, Parallel Traffic, Perpendicular Traffic, Circular
+    Crossing, Robot Crowding, Object Handover, Crash Cart
+"""
+"""Names of Table 3 and Figure 7 of Francis et al. 2025, doi:10.1145/3700599."""
+
+
+def test_every_scenario_of_francis_et_al_has_a_trial_with_a_card_or_a_reason() -> None:
+    cards = {card.name: (name, card) for name, preset in PRESETS.items() for card in preset.cards}
+    names = {" ".join(name.split()) for name in FRANCIS.split(",")}
+    assert len(names) == 27
+    assert (cards.keys() | UNSIMULATED.keys(), cards.keys() & UNSIMULATED.keys()) == (names, set())
+    for name, card in cards.values():
+        load_trial(name, **card.values)
+        assert set(card.metrics) <= metric_table().keys()
+        assert all((card.setup, card.robot, card.success, card.metrics, card.lacks))
+    assert all(UNSIMULATED.values())
+
+
+def test_every_metric_of_francis_et_al_has_a_row() -> None:
+    names = (
+        "S C WC AC HC TO FP ST T PL SPL V_min V_avg V_max A_min A_avg A_max J_min J_avg J_max CD_min CD_avg SC DH_min"
+    )
+    aliases = [row.alias for row in metric_table().values() if row.alias and "source" not in row.alias]
+    assert sorted(aliases) == sorted([*names.split(), "TTC", "AT"])
 
 
 @pytest.mark.parametrize("name", builtin_trials())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 
 from .output import add_json, print_json, print_table
 
@@ -12,7 +13,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "kind", metavar="KIND", nargs="?", help="kind, such as models, predictors or trials (default: all kinds)"
     )
-    parser.add_argument("name", metavar="NAME", nargs="?", help="built-in trial whose parameters are listed")
+    parser.add_argument("name", metavar="NAME", nargs="?", help="built-in trial: its parameters and scenarios")
     add_json(parser)
 
 
@@ -32,7 +33,7 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _parameters(options: argparse.Namespace) -> int:
-    """Print the parameters of a built-in trial."""
+    """Print the parameters of a built-in trial, and the cards of its scenarios."""
     from crowdbot.core import InputError, did_you_mean
     from crowdbot.trials import PRESETS
 
@@ -47,7 +48,17 @@ def _parameters(options: argparse.Namespace) -> int:
         raise InputError(f"{options.name!r} is not a built-in trial with parameters{near}; see crowdbot list trials")
     rows = {name: str(option) for name, option in preset.options.items()}
     if options.json:
-        print_json({preset.name: rows})
+        print_json({preset.name: rows, "scenarios": [dataclasses.asdict(card) for card in preset.cards]})
         return 0
     print_table(f"{preset.name}: {preset.about}", ("parameter", "description and default"), [*rows.items()], words=2)
+    for card in preset.cards:
+        lines = {
+            "command": f"crowdbot run {card.command(preset.name)}",
+            "setup": card.setup,
+            "robot": card.robot,
+            "success": card.success,
+            "metrics": ", ".join(card.metrics),
+            "not shown": card.lacks,
+        }
+        print_table(f"{card.name} (Francis et al. 2025, doi:10.1145/3700599)", ("", ""), [*lines.items()], words=2)
     return 0

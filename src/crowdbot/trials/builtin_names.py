@@ -23,6 +23,9 @@ TITLES = {
     "blind-corner": "An L-shaped corridor hides a person until they are near.",
     "doorway": "A robot and a person go through a narrow door from opposite sides.",
     "elevator": "People leave a small room that the robot wants to enter.",
+    "entering-room": "A robot enters a room through the door through which people come out.",
+    "exiting-room": "A robot comes out of a room through the door through which people go in.",
+    "exiting-elevator": "A robot comes out of a small room that people want to enter.",
     "overtaking": "A robot approaches a slow person from behind in a corridor.",
     "being-overtaken": "A person approaches a slow robot from behind in a corridor.",
     "following": "A person walks ahead of the robot in the same direction.",
@@ -35,6 +38,8 @@ TITLES = {
     "parallel-walk": "A robot and a person go side by side along a corridor.",
     "object-handover": "The robot approaches a waiting person and stops within reach. The trial ends there; nothing is "
     "handed over.",
+    "crash-cart": "A fast robot goes along a corridor with people, of whom most give way, to a waiting person.",
+    "robot-crowding": "A robot leaves a crowd of people who come close and look at it.",
     "one-way-with": "People walk along an endless corridor in the direction of the robot.",
     "one-way-against": "People walk along an endless corridor against the robot.",
     "two-way": "People walk along an endless corridor in both directions.",

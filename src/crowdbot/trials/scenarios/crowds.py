@@ -16,12 +16,13 @@ from crowdbot.trials.crowd import ContactSpec, Routing
 from crowdbot.trials.journey import Direction, Exit, Journey, Portal, Zone
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import SourceSpec, Spawner
+from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
 from crowdbot.world import Omnidirectional
 
 from .parts import box, corridor, flow, number, pairs, robot, scenario
-from .preset import Preset, PresetOption
+from .preset import Preset, PresetOption, ScenarioCard
 
 DENSITIES = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 """Densities of the density ladder [people/m2]; the last one is a stress test."""
@@ -224,6 +225,27 @@ def random_goals(people: int, side: float) -> Trial:
     )
 
 
+def robot_crowding(people: int, curious: float) -> Trial:
+    """People around a robot come close, and the robot leaves."""
+    return scenario(
+        "robot-crowding",
+        60.0,
+        Stage(walkable=box(-8, -8, 8, 8)),
+        contact=ContactSpec(),
+        journeys=[Journey(name="about", then="again", stops=(Zone(box(-5, -5, 5, 5), aim="random"),))],
+        spawners=[
+            Spawner(
+                name="people",
+                count=people,
+                zone=box(-4, -4, 4, 4),
+                journey="about",
+                reactions=(ReactionSpec(type="curious", share=curious, distance=5.0, gap=0.5),) if curious else (),
+            )
+        ],
+        robots=[robot((0.0, 0.0), (6.5, 0.0))],
+    )
+
+
 def bottleneck(door: float, rate: float) -> Trial:
     """People enter on the left and leave through a door; a robot crosses the hall behind it."""
     half = door / 2.0
@@ -262,6 +284,16 @@ CROWDS = (
         one_way_with,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "UMANS: one-way flow; CrowdBot: 1-D, with the flow",
+        cards=(
+            ScenarioCard(
+                name="Parallel Traffic",
+                setup="An endless corridor; a flow walks in the direction of the robot.",
+                robot="Join the flow at its speed.",
+                success="The robot arrives; the flow is not slowed down.",
+                metrics=("velocity_loss_2_5m", "neighbor_speed_ratio", "personal_space_compliance", "time_to_goal"),
+                lacks="Ends of the corridor: people who leave enter again.",
+            ),
+        ),
     ),
     Preset(
         "one-way-against",
@@ -289,6 +321,16 @@ CROWDS = (
         crossing,
         {"density": DENSITY, "both": PresetOption(False, "whether people come from both sides")},
         "social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
+        cards=(
+            ScenarioCard(
+                name="Perpendicular Traffic",
+                setup="A flow crosses the path of the robot.",
+                robot="Cross through gaps, without stopping the flow.",
+                success="The robot is across; nobody is obstructed.",
+                metrics=("min_ttc", "velocity_loss_2_5m", "gate_flow_loss", "time_to_goal"),
+                lacks="Traffic lights and right of way.",
+            ),
+        ),
     ),
     Preset(
         "circle-crossing",
@@ -303,6 +345,16 @@ CROWDS = (
         },
         "CrowdNav: circle crossing; social-jym: circular crossing (`radius=7`); UMANS: circle 5 to 50 (`people`)",
         model="orca",
+        cards=(
+            ScenarioCard(
+                name="Circular Crossing",
+                setup="People on a circle and the robot go to the opposite side.",
+                robot="Pass the crowded centre or go around it.",
+                success="Everybody arrives without a contact.",
+                metrics=("time_to_goal", "min_clearance", "discomfort_share"),
+                lacks="People who see the robot: they do not, as in CrowdNav; `robot/visible=true` changes it.",
+            ),
+        ),
     ),
     Preset(
         "dense-circle",
@@ -343,6 +395,35 @@ CROWDS = (
             "side": PresetOption(20.0, "side of the square", "m", 6.0, 100.0),
         },
         "social-jym: crowd navigation; MengeROS, ir-sim: wandering",
+        cards=(
+            ScenarioCard(
+                name="Crowd Navigation",
+                setup="A square; people walk between random places.",
+                robot="Go through gaps and make steady progress.",
+                success="The robot crosses the crowd without a contact.",
+                metrics=("personal_space_compliance", "path_efficiency", "stalled_time", "crowd_disturbance"),
+                lacks="People who stop, talk or change their mind; see `static-crowd` and `two-crowds`.",
+            ),
+        ),
+    ),
+    Preset(
+        "robot-crowding",
+        TITLES["robot-crowding"],
+        robot_crowding,
+        {
+            "people": PresetOption(16, "people", "", 1, 60),
+            "curious": PresetOption(0.7, "share of people who come close to the robot", "", 0.0, 1.0),
+        },
+        cards=(
+            ScenarioCard(
+                name="Robot Crowding",
+                setup="People walk around the robot; most come to it, stop at 0.5 m and look.",
+                robot="Start slowly, wait for a gap, and leave.",
+                success="The robot is out of the crowd without a contact.",
+                metrics=("min_clearance", "contacts", "stalled_time", "intimate_share"),
+                lacks="Touching and teasing; `block` reactions of people are near to it.",
+            ),
+        ),
     ),
     Preset(
         "bottleneck",

@@ -21,7 +21,7 @@ from crowdbot.trials.trial import Trial
 from crowdbot.world import DifferentialDrive
 
 from .parts import box, corridor, robot, scenario, uniform
-from .preset import Preset, PresetOption
+from .preset import Preset, PresetOption, ScenarioCard
 
 WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.2, 20.0)
 PERSON = PresetOption(1.2, "speed of the person", "m/s", 0.1, 2.5)
@@ -244,7 +244,26 @@ MEETINGS = (
             "low": PresetOption(1.0, "smallest speed of the person", "m/s", 0.1, 2.5),
             "high": PresetOption(1.4, "largest speed of the person", "m/s", 0.1, 2.5),
         },
-        "P&G: frontal approach; UMANS: 1 to 1, 180 degrees",
+        "UMANS: 1 to 1, 180 degrees",
+        cards=(
+            ScenarioCard(
+                name="Frontal Approach",
+                setup="A corridor; a person walks towards the robot.",
+                robot="Pass the person on one side, decided early.",
+                success="Both pass and reach their goals.",
+                metrics=("min_clearance", "personal_space_compliance", "stalled_time", "legibility"),
+                lacks="Glances, greetings and other signals.",
+            ),
+            ScenarioCard(
+                name="Narrow Hallway",
+                setup="A corridor in which a robot of 0.6 m and a person just pass each other.",
+                robot="Keep to one side and slow down, or let the person pass.",
+                success="Both pass without contact; nobody has to go back.",
+                metrics=("min_clearance", "min_wall_clearance", "stalled_time", "failures_to_progress"),
+                lacks="Turned shoulders: bodies are discs for the crowd model.",
+                values={"width": 1.2},
+            ),
+        ),
     ),
     Preset(
         "intersection",
@@ -258,7 +277,17 @@ MEETINGS = (
             "speed": PERSON,
             "robot_speed": ROBOT,
         },
-        "P&G: intersection; SEAN: cross path; UMANS: 1 to 1, 90 and 135 degrees (`angle`)",
+        "SEAN: cross path; UMANS: 1 to 1, 90 and 135 degrees (`angle`)",
+        cards=(
+            ScenarioCard(
+                name="Intersection No Gesture",
+                setup="Two corridors; a person from the side would meet the robot at the crossing.",
+                robot="Pass before or behind the person, without signals.",
+                success="Both cross without a collision.",
+                metrics=("min_ttc", "min_clearance", "stalled_time", "people_time_lost"),
+                lacks="Right of way and gestures.",
+            ),
+        ),
     ),
     Preset(
         "blind-corner",
@@ -269,14 +298,32 @@ MEETINGS = (
             "speed": PERSON,
             "distance": PresetOption(7.0, "distance of the person from the corner", "m", 1.0, 7.5),
         },
-        "P&G: blind corner",
+        cards=(
+            ScenarioCard(
+                name="Blind Corner",
+                setup="An L-shaped corridor; a person comes around the corner.",
+                robot="Slow down before the corner and leave room.",
+                success="No collision; nobody is obstructed.",
+                metrics=("min_ttc", "max_impact_speed", "min_clearance", "max_acceleration"),
+                lacks="Startled people, and steps that are heard around the corner.",
+            ),
+        ),
     ),
     Preset(
         "doorway",
         TITLES["doorway"],
         doorway,
         {"door": PresetOption(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
-        "P&G: narrow doorway",
+        cards=(
+            ScenarioCard(
+                name="Narrow Doorway",
+                setup="Two rooms and a door for one; a person comes through it from the other side.",
+                robot="Wait beside the door, or go through first if there is time.",
+                success="Both pass; the door is never blocked.",
+                metrics=("stalled_time", "failures_to_progress", "min_clearance", "people_time_lost"),
+                lacks="The person does not hold the door or wave the robot through.",
+            ),
+        ),
     ),
     Preset(
         "elevator",
@@ -286,7 +333,16 @@ MEETINGS = (
             "door": PresetOption(0.95, "width of the door", "m", 0.7, 2.0),
             "people": PresetOption(1, "people who leave", "", 1, 4),
         },
-        "P&G: entering a room, entering an elevator",
+        cards=(
+            ScenarioCard(
+                name="Entering Elevator",
+                setup="A cabin of 2.2 m by 2.2 m with an open door; people leave it.",
+                robot="Wait beside the door until people are out, then enter.",
+                success="People leave first, then the robot is in the cabin.",
+                metrics=("people_time_lost", "stalled_time", "min_clearance"),
+                lacks="Moving doors, other passengers who wait, and the turn inside.",
+            ),
+        ),
     ),
     Preset(
         "overtaking",
@@ -297,7 +353,16 @@ MEETINGS = (
             "speed": PresetOption(0.7, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": PresetOption(1.2, "speed of the robot", "m/s", 0.1, 3.0),
         },
-        "P&G: overtaking",
+        cards=(
+            ScenarioCard(
+                name="Robot Overtaking",
+                setup="A corridor; a person walks ahead, slower than the robot.",
+                robot="Overtake with a gap, without cutting in.",
+                success="The robot passes the person.",
+                metrics=("min_clearance", "personal_space_compliance", "time_to_goal", "max_acceleration"),
+                lacks="Sounds: the robot is not heard, and has no horn.",
+            ),
+        ),
     ),
     Preset(
         "being-overtaken",
@@ -308,7 +373,16 @@ MEETINGS = (
             "speed": PresetOption(1.4, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": PresetOption(0.6, "speed of the robot", "m/s", 0.1, 3.0),
         },
-        "P&G: being overtaken",
+        cards=(
+            ScenarioCard(
+                name="Pedestrian Overtaking",
+                setup="A corridor; a faster person comes from behind.",
+                robot="Keep course and speed on one side.",
+                success="The person passes the robot.",
+                metrics=("min_clearance", "path_irregularity", "people_time_lost"),
+                lacks="A robot that is blind backwards: `orca` knows the people on all sides.",
+            ),
+        ),
     ),
     Preset(
         "following",
@@ -319,21 +393,53 @@ MEETINGS = (
             "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0),
         },
-        "P&G: following",
+        cards=(
+            ScenarioCard(
+                name="Following",
+                setup="A person walks ahead at constant speed.",
+                robot="Follow at a constant distance.",
+                success="The robot is behind the person all the way.",
+                metrics=("mean_nearest_distance", "personal_space_compliance", "mean_jerk"),
+                lacks=(
+                    "The task itself: the robot goes to the goal of the person, and no built-in navigator is told "
+                    "whom to follow."
+                ),
+            ),
+        ),
     ),
     Preset(
         "joining-group",
         TITLES["joining-group"],
         joining_group,
         {"people": PEOPLE, "radius": CIRCLE},
-        "P&G, SEAN: join group",
+        "SEAN: join group",
+        cards=(
+            ScenarioCard(
+                name="Join Group",
+                setup="People stand in a circle and talk; one place is free.",
+                robot="Approach from the open side and stop at the free place.",
+                success="The robot stands in the circle.",
+                metrics=("group_intrusion", "group_space_share", "min_clearance", "max_acceleration"),
+                lacks="The group does not make room or greet the robot.",
+            ),
+        ),
     ),
     Preset(
         "leaving-group",
         TITLES["leaving-group"],
         leaving_group,
         {"people": PEOPLE, "radius": CIRCLE},
-        "P&G, SEAN: leave group",
+        "SEAN: leave group",
+        cards=(
+            ScenarioCard(
+                name="Leave Group",
+                setup="People stand in a circle and talk; the robot is one of them.",
+                robot="Leave backwards or with a slow turn, not through the circle.",
+                success="The robot is away; people keep their places.",
+                metrics=("group_intrusion", "group_space_share", "min_clearance"),
+                lacks="Saying goodbye; the group does not close.",
+            ),
+        ),
     ),
     Preset(
         "passing-group",

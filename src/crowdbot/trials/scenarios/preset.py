@@ -73,6 +73,38 @@ BUILT = "orca"
 """Model of the crowds that presets build, with the parameters of each scenario."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class ScenarioCard:
+    """Card of a scenario of Francis et al. 2025, doi:10.1145/3700599, which a built-in trial simulates.
+
+    Fields:
+        name: name in the article (Table 3 and Figure 7).
+        setup: place, and what people do.
+        robot: intended behaviour of the robot.
+        success: ideal outcome.
+        metrics: metrics of quality by name (``docs/reference/metrics.md``).
+        lacks: what the trial does not show.
+        values: parameters with which the trial is this scenario.
+    """
+
+    name: str
+    setup: str
+    robot: str
+    success: str
+    metrics: tuple[str, ...]
+    lacks: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def command(self, trial: str) -> str:
+        """Return the name of the trial, and the options that give this scenario.
+
+        >>> from crowdbot.trials import PRESETS
+        >>> [card.command("frontal") for card in PRESETS["frontal"].cards]
+        ['frontal', 'frontal --set width=1.2']
+        """
+        return " ".join([trial, *(f"--set {name}={value}" for name, value in self.values.items())])
+
+
 @dataclass(frozen=True)
 class Preset:
     """A built-in trial with parameters.
@@ -84,6 +116,7 @@ class Preset:
         own: parameters of this preset, without those of every preset.
         also: names of the scenario in other simulators and benchmarks, with the parameters.
         model: crowd model of the people; scenarios of a benchmark keep its model.
+        cards: scenarios of Francis et al. 2025 that the trial simulates.
     """
 
     name: str
@@ -92,6 +125,7 @@ class Preset:
     own: Mapping[str, PresetOption] = field(default_factory=dict)
     also: str = ""
     model: str = str(COMMON["model"].default)
+    cards: tuple[ScenarioCard, ...] = ()
 
     @property
     def options(self) -> dict[str, PresetOption]:

@@ -11,12 +11,15 @@ import math
 
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.builtin_names import TITLES
+from crowdbot.trials.journey import Direction, Journey
 from crowdbot.trials.notation import Points
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
 from .parts import STILL, box, corridor, robot, scenario
-from .preset import Preset, PresetOption
+from .preset import Preset, PresetOption, ScenarioCard
 
 WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.6, 20.0)
 ROBOT = PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0)
@@ -99,6 +102,26 @@ def object_handover(reach: float, approach: float) -> Trial:
     )
 
 
+def crash_cart(width: float, people: int, gives_way: float, robot_speed: float) -> Trial:
+    """A fast robot goes along a corridor with people to a person who waits."""
+    side = width / 2.0 - 0.4
+    reactions = (ReactionSpec(type="give-way", share=gives_way, distance=6.0),) if gives_way else ()
+    ways = {"east": people // 2, "west": people - people // 2}
+    return scenario(
+        "crash-cart",
+        60.0,
+        corridor(40.0, width),
+        journeys=[Journey(name="east", stops=(Direction(0.0),)), Journey(name="west", stops=(Direction(BACK),))],
+        agents=[Agent(name="taker", x=14.9, y=0.0, heading=BACK, speed=STILL)],
+        spawners=[
+            Spawner(name=way, count=count, zone=box(-8, -side, 12, side), journey=way, reactions=reactions)
+            for way, count in ways.items()
+            if count
+        ],
+        robots=[robot((-14.0, 0.0), (14.0, 0.0), robot_speed)],
+    )
+
+
 SHARED_WAYS = (
     Preset(
         "leading",
@@ -109,7 +132,19 @@ SHARED_WAYS = (
             "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
-        "P&G: leading",
+        cards=(
+            ScenarioCard(
+                name="Leading",
+                setup="A person walks behind the robot to the same goal.",
+                robot="Go ahead at the speed of the person, and wait if they fall back.",
+                success="The person arrives with the robot.",
+                metrics=("mean_nearest_distance", "mean_speed", "mean_jerk"),
+                lacks=(
+                    "Following: the person walks at an own pace, whatever the robot does, and no built-in navigator "
+                    "waits."
+                ),
+            ),
+        ),
     ),
     Preset(
         "pedestrian-obstruction",
@@ -120,8 +155,17 @@ SHARED_WAYS = (
             "people": PresetOption(1, "people who stand in the path", "", 1, 20),
             "gives_way": PresetOption(False, "whether they step aside"),
         },
-        "P&G: pedestrian obstruction",
         model="orca",  # people who stand step aside
+        cards=(
+            ScenarioCard(
+                name="Pedestrian Obstruction",
+                setup="A corridor; people stand in its middle.",
+                robot="Go around them where there is room, else wait.",
+                success="The robot passes without contact.",
+                metrics=("min_clearance", "personal_space_compliance", "stalled_time", "time_to_goal"),
+                lacks="Asking people to step aside; `gives_way=true` lets them do it by themselves.",
+            ),
+        ),
     ),
     Preset(
         "down-path",
@@ -133,7 +177,17 @@ SHARED_WAYS = (
             "against": PresetOption(1, "people who walk towards the robot", "", 0, 3),
             "speed": PresetOption(0.8, "speed of the people", "m/s", 0.1, 2.5),
         },
-        "P&G, SEAN: down path",
+        "SEAN: down path",
+        cards=(
+            ScenarioCard(
+                name="Down Path",
+                setup="A corridor; people walk with the robot and against it.",
+                robot="Go along with the others, at their speed where it cannot pass.",
+                success="The robot arrives without a contact.",
+                metrics=("min_clearance", "time_to_goal", "stalled_time", "path_efficiency"),
+                lacks="Lanes of more than a few people; see `two-way`.",
+            ),
+        ),
     ),
     Preset(
         "parallel-walk",
@@ -144,7 +198,16 @@ SHARED_WAYS = (
             "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
-        "P&G: parallel walk",
+        cards=(
+            ScenarioCard(
+                name="Accompanying Peer",
+                setup="A person walks beside the robot to a goal beside its own.",
+                robot="Stay beside the person.",
+                success="Both arrive together.",
+                metrics=("mean_nearest_distance", "personal_space_compliance", "mean_jerk"),
+                lacks="The bond: the person does not adapt, and no built-in navigator is told whom to accompany.",
+            ),
+        ),
     ),
     Preset(
         "object-handover",
@@ -156,6 +219,36 @@ SHARED_WAYS = (
                 30.0, "angle between the heading of the person and the start of the robot", "deg", -90.0, 90.0
             ),
         },
-        "P&G: object handover",
+        cards=(
+            ScenarioCard(
+                name="Object Handover",
+                setup="An open space; a person stands and waits.",
+                robot="Approach from the front and stop within reach.",
+                success="The robot stands within reach of the person.",
+                metrics=("min_clearance", "max_acceleration", "min_ttc"),
+                lacks="The object, arms and hands: the trial ends when the robot is there.",
+            ),
+        ),
+    ),
+    Preset(
+        "crash-cart",
+        TITLES["crash-cart"],
+        crash_cart,
+        {
+            "width": WIDTH,
+            "people": PresetOption(6, "people who walk in the corridor", "", 0, 40),
+            "gives_way": PresetOption(0.8, "share of people who give way to the robot", "", 0.0, 1.0),
+            "robot_speed": PresetOption(1.5, "speed of the robot", "m/s", 0.1, 3.0),
+        },
+        cards=(
+            ScenarioCard(
+                name="Crash Cart",
+                setup="A corridor; people walk both ways and most give way; somebody waits at its end.",
+                robot="Go fast and on a line that people understand early, without touching anybody.",
+                success="The robot stops within reach of the waiting person, with little delay.",
+                metrics=("time_to_goal", "min_ttc", "max_impact_speed", "max_fear", "stalled_time"),
+                lacks="Alarm and lights, the load, and the handover.",
+            ),
+        ),
     ),
 )
