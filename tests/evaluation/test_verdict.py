@@ -40,12 +40,12 @@ def cell(outcomes: Sequence[str], touched: Sequence[str] = (), **protocol: Any) 
 
 
 def test_the_sentence_has_persons_walls_and_arrivals_with_exact_intervals() -> None:
-    outcomes = ["collision"] * 5 + ["timeout"] * 2 + ["success"] * 193
+    outcomes = ["collision"] * 5 + ["finished"] * 2 + ["success"] * 193
     found = judge_cell(cell(outcomes, ["person"] * 3 + ["wall", "object"]))
     assert found.sentence == (
         "In 200 runs of hall with orca on qolo the robot touched a person in 3 (0.31 to 4.3 %), touched a wall or an"
-        " object in 2 (0.12 to 3.6 %) and failed to arrive in 7 (1.4 to 7.1 %: 5 contacts, 2 timeouts); not shown safe:"
-        " no requirement on the rate of contacts with persons is given, such as collision-rate<0.05@95%."
+        " object in 2 (0.12 to 3.6 %) and failed to arrive in 7 (1.4 to 7.1 %: 5 contacts, 2 planned ends); not shown"
+        " safe: no requirement on the rate of contacts with persons is given, such as collision-rate<0.05@95%."
     )
     assert found.limit == (
         "200 runs can show at most this: without any contact, the rate of contacts is at most 1.5 % with 95 %"

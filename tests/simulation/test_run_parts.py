@@ -74,7 +74,7 @@ def test_the_outcome_of_a_run_cannot_be_given() -> None:
         SimulationRun(Simulation(TINY, 3), outcome="success")  # type: ignore[call-arg]
 
 
-@pytest.mark.parametrize(("x", "ended"), [(-2.0, "success"), (3.0, "timeout")])
+@pytest.mark.parametrize(("x", "ended"), [(-2.0, "success"), (3.0, "finished")])
 def test_a_robot_with_a_new_goal_has_not_arrived_yet(x: float, ended: str) -> None:
     trial = with_goal(dataclasses.replace(TINY, duration=0.4, end=dataclasses.replace(TINY.end, goal=False)), -2.0)
     simulation = Simulation(trial, 3)

@@ -7,7 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from crowdbot.core import stream
+from crowdbot.simulation import simulate
 from crowdbot.simulation.termination import may_be_near, note_events
+from crowdbot.trials import load_trial
 
 
 def controls(*arrived: np.ndarray) -> list[SimpleNamespace]:
@@ -40,3 +42,9 @@ def test_an_agent_that_is_near_is_never_missed() -> None:
             may = may_be_near(place[e : e + 1], 0, point, np.array([distance]))
             assert may or not away[e] < distance
     assert not may_be_near(place[:1], 0, point, 0.9 * away[:1])
+
+
+def test_a_duration_that_no_goal_cuts_short_is_a_planned_end() -> None:
+    for goal, outcome in ((True, "timeout"), (False, "finished")):
+        episode = simulate(load_trial("frontal", {"duration": 1.0, "end/goal": goal}))
+        assert (episode.outcome, episode.metrics["timeout"]) == (outcome, 1.0)  # the metric: the goal was missed

@@ -5,6 +5,9 @@ import pytest
 pytestmark = pytest.mark.live
 
 TAB = "#tab=evaluation"
+SHOWN = """<trial name="shown" duration="1" seed="1"><stage/><crowd type="orca"/><agent x="0" y="0" goal="4,0"/>
+<robot x="0" y="3"><goal x="9" y="3"/><drive type="differential-drive"/><navigator type="straight"/></robot>
+<end goal="false"/></trial>"""
 STATUS = "crowdbot.tab('simulator').status"
 
 
@@ -74,6 +77,22 @@ def test_robots_are_named_checked_and_compared(page):
     page.get_by_role("button", name="Watch seed 1").click()
     page.wait_for_function("() => crowdbot.keys.active === 'simulator'")
     page.wait_for_function(f"() => {STATUS}.name === 'evaluations/first/row-2-seed-1.mcap'")
+
+
+def test_a_planned_end_is_neither_a_timeout_nor_a_failure(page, app):
+    (app.folder / "shown.xml").write_text(SHOWN)
+    page.reload()
+    page.get_by_role("tab", name="Evaluation").click()
+    page.get_by_label("Trials").select_option("shown.xml")
+    page.get_by_label("Navigators").fill("straight")
+    page.get_by_label("Seeds").fill("0:2")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_role("heading", name="first").wait_for(timeout=300_000)
+    page.get_by_role("button", name="2 runs").click()
+    page.get_by_label("Only the 0 failures").wait_for()
+    outcomes = page.locator(".results table").last.locator("tbody tr td:nth-of-type(2)").all_inner_texts()
+    assert outcomes == ["finished", "finished"]
+    assert page.locator(".strips .square").count() == 2
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

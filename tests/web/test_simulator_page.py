@@ -232,6 +232,15 @@ def test_an_episode_is_opened_scrubbed_and_branched_and_two_windows_agree(page, 
     assert status(page, "begin") == 4.0
 
 
+def test_a_run_that_ends_as_its_trial_plans_is_not_called_a_timeout(page):
+    show_from_above(page)
+    values = {"duration": "1", "end/goal": "false"}
+    page.evaluate("settings => crowdbot.connection.call('simulator.open', { name: 'frontal', settings })", values)
+    wait(page, f"{VIEW}.status.state === 'ended' && {VIEW}.status.trial === 'frontal'", FIRST_RUN / 1000)
+    line = page.locator(".status-line").inner_text()
+    assert line.startswith("frontal, seed 1: ended as planned")
+
+
 def test_axe_finds_nothing_in_both_themes(page, axe):
     show_from_above(page)
     open_trial(page, "circle-crossing")

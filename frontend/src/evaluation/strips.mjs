@@ -3,7 +3,7 @@ const NS = "http://www.w3.org/2000/svg";
 const WIDTH = 720;
 const LEFT = 190;
 const HEIGHT = 26;
-const MARKS = { success: "circle", collision: "cross", timeout: "square" };
+const MARKS = { success: "circle", collision: "cross", timeout: "square", finished: "square" };
 
 function s(tag, attributes, ...children) {
   const element = document.createElementNS(NS, tag);

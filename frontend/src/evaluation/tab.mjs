@@ -6,7 +6,7 @@ import { upload } from "../ui/upload.mjs";
 import { RobotField, robotFacts } from "./robot_field.mjs";
 import { makeStrips } from "./strips.mjs";
 
-const GOOD = new Set(["success"]);
+const GOOD = new Set(["success", "finished"]);
 
 class EvaluationTab {
   constructor(root, app) {
@@ -180,7 +180,7 @@ class EvaluationTab {
       h("ul", { class: "comparisons" }, table.comparisons.map((one) => h("li", {}, one))),
       h("div", { class: "row" }, field("Picture of each run by", choice), table.report ? h("a", { href: report, target: "_blank", rel: "noopener" }, "Report") : null),
       makeStrips(table.cells, this.statistic, table.titles[this.statistic], (cell, seed) => this.watch(cell, seed)),
-      h("p", { class: "note" }, "Circle: success. Cross: collision, fall or error. Square: timeout. Choose a mark to watch the run."),
+      h("p", { class: "note" }, "Circle: success. Cross: collision, fall or error. Square: timeout or planned end. Choose a mark to watch the run."),
       this.runs(),
     );
   }

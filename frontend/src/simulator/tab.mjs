@@ -248,7 +248,7 @@ class SimulatorView {
       this.line.textContent = problems?.length ? problems[0] : "Nothing is open";
       return;
     }
-    const word = state === "ended" && outcome ? `ended: ${outcome}` : state;
+    const word = state === "ended" && outcome ? (outcome === "finished" ? "ended as planned" : `ended: ${outcome}`) : state;
     const parts = [`${trial}, seed ${seed}: ${word}`, `${(time ?? 0).toFixed(1)} s`, `speed ${speedText(speed)}`];
     if (state === "running" && factor) parts.push(`real-time factor ${factor.toFixed(2)}`);
     if (values?.people !== undefined) parts.push(`${values.people} people`);

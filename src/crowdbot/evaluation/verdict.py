@@ -20,7 +20,7 @@ SMALL_RATE = 0.01
 """Rate of contacts for which the number of runs is named without a requirement."""
 ON_PERSONS = ("collision", "person_collision")
 """Metrics whose rate can show safety: its exact bound holds at any number of runs, a bootstrap without contact is 0."""
-OUTCOMES = {"collision": "contact", "error": "failed navigator"}
+OUTCOMES = {"collision": "contact", "error": "failed navigator", "finished": "planned end"}
 """Words for outcomes, where the name of the outcome is not enough."""
 
 

@@ -51,8 +51,8 @@ class Episode:
 
     Fields:
         trial, seed: the trial and its seed.
-        outcome: ``success``, ``collision`` or ``timeout``; ``finished`` without a robot, ``interrupted`` if stopped
-            from outside, ``error`` after an exception in user code.
+        outcome: ``success``, ``collision`` or ``timeout``; ``finished`` at a planned end (see the outcomes of a trial),
+            ``interrupted`` if stopped from outside, ``error`` after an exception in user code.
         steps: number of time steps.
         times: times ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for absent agents.

@@ -17,6 +17,7 @@ from .episode_digest import EpisodeDigest
 from .failure import RunFailure
 from .orders.goal_order import GoalOrder
 from .step_record import StepRecord
+from .termination import FINISHED
 
 
 @dataclass(frozen=True)
@@ -96,8 +97,13 @@ class EpisodeStatistics:
             self._touching = set()
 
     def metrics(self, outcome: str) -> dict[str, float]:
-        """Return the metrics of all robots, in the physics world with those of impacts."""
+        """Return the metrics of all robots, in the physics world with those of impacts.
+
+        ``timeout`` is 1 where the goal was missed when the duration was over, also if that end was planned.
+        """
         names = [robot.name for robot in self.trial.robots]
+        if outcome == FINISHED and self.travels and not self.trial.end.goal:
+            outcome = "timeout" if round(self.end / self.trial.step) >= self.trial.ticks else outcome
         return robot_metrics(self.travels, names, outcome) | self._impact_metrics()
 
     def _impact_metrics(self) -> dict[str, float]:

@@ -23,7 +23,7 @@ ROUNDING = 1e-6
 FALLEN = -1
 """Number of the end condition that somebody has fallen."""
 FINISHED = "finished"
-"""Outcome of a trial that ends when nobody is left."""
+"""Outcome of a run whose end is planned: nobody is left, or its duration is over and no goal would have ended it."""
 
 
 def goal_zones(people: InitialPeople) -> list[GoalZone]:
@@ -192,6 +192,8 @@ def run_outcome(end: End, event: str, number: int, over: bool, robots: bool) -> 
 
     >>> run_outcome(End(), "", 1, False, True), run_outcome(End(fall=True), "", FALLEN, False, True)
     ('finished', 'fall')
+    >>> run_outcome(End(), "", 0, True, True), run_outcome(End(goal=False), "", 0, True, True)
+    ('timeout', 'finished')
     """
     if (event == "collision" and end.collision) or (event == "success" and end.goal):
         return event
@@ -201,7 +203,7 @@ def run_outcome(end: End, event: str, number: int, over: bool, robots: bool) -> 
         return FINISHED if number == 1 else end.conditions[number - 2].outcome
     if not over:
         return None
-    return event or ("timeout" if robots else FINISHED)
+    return event or ("timeout" if robots and end.goal else FINISHED)
 
 
 def _people_count(world: World) -> Ints:
