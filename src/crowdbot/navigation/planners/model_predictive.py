@@ -16,7 +16,7 @@ from crowdbot.navigation.wall_arrays import wall_arrays
 from crowdbot.typing import Floats
 
 from .clearance import robot_wall_gaps, wall_gaps
-from .plan_costs import along_variance, contact_probability, progress_cost, space_lack
+from .plan_costs import nearest_people, probability_of, progress_cost, space_lack
 from .rollout import roll_out
 
 STEP = 0.2
@@ -44,8 +44,8 @@ class _People(NamedTuple):
     """``[K, N]`` of the futures of each person, sums to 1 over K."""
     sigma: Floats
     """``[T, N]`` standard deviation of the clearance without the covariance [m]."""
-    covariance: Floats | None
-    """``[K, T, N, 2, 2]`` [m^2] around each future, or None."""
+    covariance: Floats
+    """``[K, T, N, 2, 2]`` [m^2] around each future, or ``[K, 0, N, 2, 2]``."""
 
 
 @dataclass(frozen=True)
@@ -150,16 +150,13 @@ class MPCNavigator(Navigator):
     def _people(self, observation: Observation, position: Floats) -> tuple[Floats, Floats]:
         """Return the cost ``[C]`` of people near the paths ``[C, T, 2]``, and the largest probability of contact."""
         people = self._forecast(observation, position.shape[1])
-        total, contact = np.zeros(len(position)), np.zeros((len(position), len(people.radius)))
+        (C, T), N = position.shape[:2], len(people.radius)
+        total, contact = np.zeros(C), np.zeros((C, N))
+        steep, gap, reach = np.empty((C, N)), np.empty((C, T)), people.radius + observation.radius
         for k, place in enumerate(people.place):
-            away = position[:, :, None] - place
-            gap = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2) - people.radius - observation.radius
-            sigma = people.sigma
-            if people.covariance is not None:
-                sigma = np.sqrt(sigma**2 + along_variance(away, people.covariance[k]))
-            contact += people.share[k] * contact_probability(gap, self.margin, sigma)
-            lack = space_lack(gap, self.space).max(axis=2, initial=0.0)
-            total += people.weight[k] * (self.comfort * lack.mean(axis=1))
+            nearest_people(position, place, reach, self.margin, people.sigma, people.covariance[k], steep, gap)
+            contact += people.share[k] * probability_of(steep)
+            total += people.weight[k] * (self.comfort * space_lack(gap, self.space).mean(axis=1))
         contact *= people.existence
         return total + self.risk * contact.sum(axis=1), contact.max(axis=1, initial=0.0)
 
@@ -168,39 +165,35 @@ class MPCNavigator(Navigator):
         people = observation.people
         times: Floats = STEP * np.arange(1.0, steps + 1.0)
         places = (people.position + times[:, None, None] * people.velocity)[None]
-        weight, spread = np.ones(1), None
+        weight, share = np.ones(1), np.ones((1, len(people)))
         pace = np.minimum(np.hypot(*people.velocity.T) / WALKING, 1.0)
+        spread = np.zeros((1, steps if self.mixture else 0, len(people), 2, 2))
         if self.mixture and (observation.predictor is None or observation.tracks is None):
             raise InputError(
                 'MPCNavigator: mixture = True, but the robot has no predictor; add <predictor type="anchor-net"/>'
                 ' and tracks="3.2" to it, or leave mixture out'
             )
-        share = np.ones((1, len(people)))
         if observation.predictor is not None and observation.tracks is not None and len(people):
             forecast = observation.forecast(seconds=self.horizon, samples=self.samples)
-            places, weight = np.repeat(places, forecast.samples, axis=0), forecast.weight[0] / forecast.weight[0].sum()
+            K, column = forecast.samples, {int(id_): k for k, id_ in enumerate(observation.tracks.ids)}
+            places, spread = np.repeat(places, K, axis=0), np.repeat(spread, K, axis=0)
+            weight = forecast.weight[0] / forecast.weight[0].sum()
             share = np.repeat(weight[:, None], len(people), axis=1)
-            mixture = self._mixture(forecast) if self.mixture else None
-            spread = None if mixture is None else np.zeros((*places.shape, 2))
-            knots = forecast.dt * np.arange(forecast.steps + 1)
-            column = {int(id_): k for k, id_ in enumerate(observation.tracks.ids)}
-            for a, item in enumerate(people.ids.tolist()):
-                if (k := column.get(item)) is None or not forecast.valid[0, k]:
-                    continue  # not predicted: constant velocity
-                for s, c in np.ndindex(forecast.samples, 2):
-                    track = np.append(people.position[a, c], forecast.position[0, s, :, k, c])
-                    places[s, :, a, c] = np.interp(times, knots, track)
-                if mixture is not None and spread is not None:
-                    share[:, a], pace[a] = mixture[0][:, k], 0.0
-                    spread[:, :, a] = _between(times / forecast.dt, mixture[1][:, :, k])
+            at = np.array([column.get(item, -1) for item in people.ids.tolist()])
+            known = np.flatnonzero(np.append(forecast.valid[0], False)[at])  # the others keep their velocity
+            at, row = at[known], times / forecast.dt
+            here = np.broadcast_to(people.position[known], (K, 1, len(known), 2))
+            places[:, :, known] = _between(row, here, forecast.position[0][:, :, at])
+            if self.mixture:
+                own, around = self._mixture(forecast)
+                share[:, known], pace[known] = own[:, at], 0.0
+                spread[:, :, known] = _between(row, np.zeros_like(around[:, :1, at]), around[:, :, at])
         reach = self.speed * self.horizon + observation.radius + self.space + 1.0
         closest = np.hypot(*np.moveaxis(places - observation.position, -1, 0)).min(axis=(0, 1)) - people.radius
         near = closest < reach
         sigma = self.uncertainty + self.growth * STEP * np.arange(1, steps + 1)[:, None] * pace[near]
-        return _People(
-            places[:, :, near], people.radius[near], people.existence[near], weight, share[:, near], sigma,
-            None if spread is None else spread[:, :, near],
-        )  # fmt: skip
+        place, covariance = np.ascontiguousarray(places[:, :, near]), np.ascontiguousarray(spread[:, :, near])
+        return _People(place, people.radius[near], people.existence[near], weight, share[:, near], sigma, covariance)
 
     def _mixture(self, forecast: Forecast) -> tuple[Floats, Floats]:
         """Return the weights ``[K, A]`` and covariances ``[K, T, A, 2, 2]`` of a forecast."""
@@ -227,9 +220,9 @@ class MPCNavigator(Navigator):
         return WALL / observation.radius * (most + depth.mean(axis=1)), most
 
 
-def _between(row: Floats, covariance: Floats) -> Floats:
-    """Return covariances ``[K, T, 2, 2]`` at rows, from those at rows 1, 2, ... and 0 at row 0, linear in between."""
-    known = np.concatenate([np.zeros_like(covariance[:, :1]), covariance], axis=1)
-    low = np.minimum(row.astype(np.int64), known.shape[1] - 2)
-    part = np.minimum(row - low, 1.0)[:, None, None]
-    return np.asarray((1.0 - part) * known[:, low] + part * known[:, low + 1])
+def _between(row: Floats, first: Floats, later: Floats) -> Floats:
+    """Return values ``[K, T, ...]`` at rows, linear between those at row 0 ``[K, 1, ...]`` and at rows 1, 2, ..."""
+    known = np.concatenate([first, later], axis=1)
+    low = np.minimum(row.astype(np.int64), later.shape[1] - 1)
+    part = np.minimum(row - low, 1.0).reshape(-1, *[1] * (known.ndim - 2))
+    return np.asarray(known[:, low] + part * (known[:, low + 1] - known[:, low]))

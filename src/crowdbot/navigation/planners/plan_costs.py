@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from crowdbot.core import kernel
 from crowdbot.typing import Floats
 
 from .rollout import PlanMotions
@@ -35,23 +38,53 @@ def contact_probability(gap: Floats, margin: float, sigma: Floats) -> Floats:
     >>> contact_probability(np.array([[0.1, 0.5]]), 0.1, np.array([0.05, 0.05])).tolist()
     [0.5]
     """
-    steep = np.clip(LOGISTIC * (gap - margin) / sigma, -50.0, 50.0)
-    return np.asarray(1.0 / (1.0 + np.exp(steep.min(axis=1))))
+    return probability_of((LOGISTIC * (gap - margin) / sigma).min(axis=1))
 
 
-def along_variance(away: Floats, covariance: Floats) -> Floats:
-    """Return the variance ``[..., N]`` [m^2] of the distance of people along the lines of sight to a robot.
+def probability_of(steep: Floats) -> Floats:
+    """Return the probabilities of contact for least scaled clearances, see :func:`nearest_people`."""
+    return np.asarray(1.0 / (1.0 + np.exp(np.clip(steep, -50.0, 50.0))))
+
+
+@kernel
+def nearest_people(
+    position: Floats, place: Floats, reach: Floats, margin: float, sigma: Floats, covariance: Floats, steep: Floats,
+    gap: Floats,
+) -> None:  # fmt: skip
+    """Write how near C plans come to N people, who are expected at one place at each of T steps.
 
     Args:
-        away: ``[..., N, 2]`` [m] from the people to the robot.
-        covariance: ``[..., N, 2, 2]`` [m^2] of the positions of the people.
+        position: places of the robot ``[C, T, 2]`` [m].
+        place: expected places of the people ``[T, N, 2]`` [m].
+        reach: distances of centres at contact ``[N]`` [m].
+        margin: clearance at which a contact is as likely as not [m].
+        sigma: ``[T, N]`` standard deviations of the clearances without the covariances [m].
+        covariance: ``[T, N, 2, 2]`` [m^2] of the places, or ``[0, N, 2, 2]``; they count along the line of sight.
+        steep: written ``[C, N]``: the least ``1.702 (clearance - margin) / deviation``.
+        gap: written ``[C, T]``: the clearance to the nearest person [m].
 
-    >>> along_variance(np.array([[3.0, 0.0], [0.0, 2.0]]), np.diag([0.04, 0.01])).tolist()
-    [0.04, 0.01]
+    >>> steep, gap = np.empty((1, 1)), np.empty((1, 1))
+    >>> spread = np.array([[[[0.16, 0.0], [0.0, 1.0]]]])
+    >>> nearest_people(np.zeros((1, 1, 2)), np.array([[[1.5, 0.0]]]), np.array([0.5]), 0.1, np.array([[0.3]]), spread,
+    ...     steep, gap)
+    >>> gap.tolist(), (steep / LOGISTIC).round(9).tolist()
+    ([[1.0]], [[1.8]])
     """
-    x, y = away[..., 0], away[..., 1]
-    own = x * x * covariance[..., 0, 0] + 2.0 * x * y * covariance[..., 0, 1] + y * y * covariance[..., 1, 1]
-    return np.asarray(np.maximum(own, 0.0) / np.maximum(x * x + y * y, 1e-18))
+    for c in range(len(position)):
+        steep[c] = np.inf
+        for t in range(position.shape[1]):
+            gap[c, t] = np.inf
+            for n in range(len(reach)):
+                x, y = position[c, t, 0] - place[t, n, 0], position[c, t, 1] - place[t, n, 1]
+                square = x * x + y * y
+                own = math.sqrt(square) - reach[n]
+                deviation = sigma[t, n]
+                if len(covariance):
+                    s = covariance[t, n]
+                    along = (x * x * s[0, 0] + 2.0 * x * y * s[0, 1] + y * y * s[1, 1]) / max(square, 1e-18)
+                    deviation = math.sqrt(deviation * deviation + max(along, 0.0))
+                steep[c, n] = min(steep[c, n], LOGISTIC * (own - margin) / deviation)
+                gap[c, t] = min(gap[c, t], own)
 
 
 def space_lack(gap: Floats, space: float) -> Floats:
