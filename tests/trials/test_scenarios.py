@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from crowdbot.core import TrialError
+from crowdbot.core import TrialError, stream
 from crowdbot.metrics import metric_table
 from crowdbot.models import SocialForce
 from crowdbot.navigation import Straight
@@ -21,12 +22,14 @@ from crowdbot.trials import (
     PRESETS,
     SIZES,
     UNSIMULATED,
+    Zone,
     builtin_trials,
     check_trial,
     load_trial,
     parse_trial,
     trial_xml,
 )
+from crowdbot.world import Router
 from samples import sample
 
 LISTED = """
@@ -35,6 +38,7 @@ LISTED = """
     crossing-flows bottleneck static-crowd random-goals density-ladder leading pedestrian-obstruction down-path
     parallel-walk object-handover delayed-circle circle-with-standing corner-traffic block four-blocks one-against-ten
     crowd-against-crowd entering-room exiting-room exiting-elevator crash-cart robot-crowding
+    random-hall
 """
 QUICK = [
     name for name in LISTED.split() if name not in ("one-way-with", "one-way-against", "two-way", "density-ladder")
@@ -264,3 +268,31 @@ def test_every_density_of_a_corridor_can_be_placed(name: str, width: float) -> N
     assert trial.people == pytest.approx(3.0 * 40.0 * width, abs=1)
     for seed in (0, 1, 2):
         check_trial(trial, seed)  # people who do not fit are an error
+
+
+@pytest.mark.parametrize("layout", sample(range(400), 12))
+def test_a_random_hall_is_possible_with_any_seed_and_parameters(layout: int) -> None:
+    rng = stream(layout, "parameters")
+    drawn: dict[str, float] = {}
+    for name, option in PRESETS["random-hall"].own.items():
+        value = float(rng.uniform(option.low, min(option.high, 30.0) if option.unit else option.high))
+        drawn[name] = value if option.unit else round(value)
+    for values in ({"layout": layout}, drawn):
+        trial = load_trial("random-hall", values)
+        check_trial(trial, layout)  # people who do not fit, and a robot without a path, are errors
+        (robot,) = trial.robots
+        planner = robot.stage_planner(trial.stage)
+        assert planner is not None
+        assert planner.waypoints(robot.position, robot.goal.position)[-1].tolist() == [*robot.goal.position]
+        router = Router.of(trial.stage.as_walls(), 0.3)
+        for journey in trial.journeys:
+            corners = np.array([stop.points for stop in journey.stops if isinstance(stop, Zone)])
+            assert trial.stage.clearance(corners.reshape(-1, 2)).min() >= router.radius
+            middles = corners.mean(axis=1)
+            router.towards(middles, middles[::-1])  # raises without a path
+
+
+def test_a_random_hall_is_the_same_on_every_machine() -> None:
+    text = "".join(trial_xml(load_trial("random-hall", layout=layout)) for layout in range(1, 6))
+    assert hashlib.blake2b(text.encode(), digest_size=8).hexdigest() == "490972c590cd5baf"
+    assert len({trial_xml(load_trial("random-hall", layout=layout)) for layout in range(1, 6)}) == 5

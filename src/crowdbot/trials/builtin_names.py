@@ -60,6 +60,7 @@ TITLES = {
     "one-against-ten": "A crowd of ten crosses the path of the robot at an angle, or walks towards it.",
     "crowd-against-crowd": "Two crowds meet, scattered or in ranks, and a robot crosses the place where they do.",
     "attention-ladder": "A circle crossing of CrowdNav in which a share of the people sees the robot.",
+    "random-hall": "A robot crosses a random hall with rooms, doors, obstacles and flows; `layout` is its seed.",
     **{
         f"crowdnav-{kind}-{count}": f"CrowdNav: {count} people {words}, and a robot that they do not see crosses; it"
         " knows everybody's state."
