@@ -117,6 +117,44 @@ def click_a_person(page):
     expect(page.get_by_role("img", name=f"Error (ADE) of person {place['id']}")).to_be_visible()
 
 
+def test_columns_are_chosen_read_and_kept(tab, capsys):
+    page = tab
+    open_example(page)
+    add_base(page, "sampled-constant-velocity")
+    run(page, 1)
+    page.get_by_text("Columns", exact=True).click()
+    boxes = page.get_by_role("group", name="Columns that are shown").get_by_role("checkbox")
+    heads = page.locator(".metrics thead th.number")
+    assert heads.count() == boxes.count() > 8
+    page.get_by_role("combobox", name="Export or copy").select_option("Copy as command line")
+    dialog = page.get_by_role("dialog", name="Copy as command line")
+    line = dialog.get_by_label("Text").input_value()
+    dialog.get_by_role("button", name="Close").click()
+    capsys.readouterr()
+    assert main([*shlex.split(line)[1:], "--json"]) == 0
+    total = json.loads(capsys.readouterr().out)["results"][0]["total"]
+    cells = dict(zip(heads.all_inner_texts(), page.locator(".metrics tbody td").all_inner_texts(), strict=True))
+    for head, name in (("swept [%]", "swept_collisions"), ("radii [%]", "swept_contacts")):
+        assert cells[head] == f"{100 * total[name]:.1f} ({100 * total[f'{name}_truth']:.1f})"
+    region = page.get_by_role("region", name="Table of metrics").bounding_box()
+    for head in heads.all():  # each is seen whole, right of the names of the predictors, after scrolling in the panel
+        head.scroll_into_view_if_needed()
+        box = head.bounding_box()
+        assert region["x"] <= box["x"]
+        assert box["x"] + box["width"] <= region["x"] + region["width"]
+
+    page.get_by_role("checkbox", name="NLL").uncheck()
+    page.get_by_role("checkbox", name="windows").uncheck()
+    rest = [head for head in cells if head not in ("NLL", "windows")]
+    assert heads.all_inner_texts() == rest
+    page.reload()
+    expect(page.locator(".metrics tbody tr")).to_have_count(1)
+    assert heads.all_inner_texts() == rest
+    page.get_by_text("Columns", exact=True).click()
+    page.get_by_role("checkbox", name="NLL").check()
+    assert "NLL" in heads.all_inner_texts()
+
+
 def test_degraded_input_shows_its_difference(tab):
     page = tab
     open_example(page)

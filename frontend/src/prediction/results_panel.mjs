@@ -1,25 +1,57 @@
-// The table of metrics with its protocol, and the person that was clicked.
+// The table of metrics with its protocol and the choice of its columns, and the person that was clicked.
 import { fill, h } from "../ui/dom.mjs";
 import { sample } from "./predictor_panel.mjs";
 
+const HINT = "No results yet: add a predictor and press Run.";
+
 export function makeResultsPanel(store) {
-  const place = h("div", { class: "table-place", tabindex: 0, role: "region", "aria-label": "Table of metrics" });
-  store.on("results", ({ table }) => fill(place, table.rows.length ? metricTable(table) : h("p", { class: "hint" }, "No results yet: add a predictor and press Run.")));
-  fill(place, h("p", { class: "hint" }, "No results yet: add a predictor and press Run."));
-  return h("section", { "aria-label": "Metrics", class: "metrics" }, h("h2", {}, "Metrics"), place);
+  const place = h("div", { class: "table-place", tabindex: 0, role: "region", "aria-label": "Table of metrics" }, h("p", { class: "hint" }, HINT));
+  const choice = h("div", { class: "checks", role: "group", "aria-label": "Columns that are shown" });
+  const menu = h("details", { class: "columns", hidden: true }, h("summary", {}, "Columns"), choice);
+  let table = { rows: [] };
+
+  function draw() {
+    fill(place, table.rows.length ? metricTable(table, columnsOf(table).filter((one) => !store.hiddenColumns.has(one.name))) : h("p", { class: "hint" }, HINT));
+  }
+
+  function box({ name, head }) {
+    const control = h("input", { type: "checkbox", checked: !store.hiddenColumns.has(name) });
+    control.addEventListener("change", () => {
+      store.hideColumn(name, !control.checked);
+      draw();
+    });
+    return h("label", {}, control, head);
+  }
+
+  store.on("results", (results) => {
+    const before = columnsOf(table).map(({ head }) => head).join();
+    table = results.table;
+    const columns = columnsOf(table);
+    menu.hidden = !columns.length;
+    if (columns.map(({ head }) => head).join() !== before) fill(choice, columns.map(box)); // a box that is focused stays
+    draw();
+  });
+  return h("section", { "aria-label": "Metrics", class: "metrics" }, h("div", { class: "title" }, h("h2", {}, "Metrics"), menu), place);
 }
 
-function metricTable({ heads, rows, caption, unit }) {
-  const differs = rows.some((row) => row.difference !== null);
-  const column = (text) => h("th", { scope: "col", class: "number" }, text);
-  const head = h("tr", {}, h("th", { scope: "col" }, "predictor"), heads.map(column), differs && column(`ADE minus as recorded [${unit}]`));
-  const body = rows.map((row) =>
+/** The columns of the server, and the difference to the input as recorded; the name is the head without its unit. */
+function columnsOf({ heads, rows, unit }) {
+  if (!rows.length) return [];
+  const columns = heads.map((head, i) => ({ head, words: rows.map((row) => row.cells[i]) }));
+  const difference = (value) => (value === null ? "-" : `${value > 0 ? "+" : ""}${value.toFixed(3)}`);
+  if (rows.some((row) => row.difference !== null))
+    columns.push({ head: `ADE minus as recorded [${unit}]`, words: rows.map((row) => difference(row.difference)) });
+  return columns.map((one) => ({ ...one, name: one.head.split(" [")[0] }));
+}
+
+function metricTable({ rows, caption }, columns) {
+  const head = h("tr", {}, h("th", { scope: "col" }, "predictor"), columns.map((one) => h("th", { scope: "col", class: "number" }, one.head)));
+  const body = rows.map((row, i) =>
     h(
       "tr",
       { "data-key": row.key, "data-input": row.input },
       h("th", { scope: "row" }, sample(row.slot, row.input), " ", row.label, row.input === "degraded" ? " (degraded)" : "", row.note && h("small", {}, ` ${row.note}`)),
-      row.cells.map((one) => h("td", { class: "number" }, one)),
-      differs && h("td", { class: "number" }, row.difference === null ? "-" : `${row.difference > 0 ? "+" : ""}${row.difference.toFixed(3)}`),
+      columns.map((one) => h("td", { class: "number" }, one.words[i])),
     ),
   );
   return h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, body));

@@ -17,6 +17,7 @@ export class Store extends EventTarget {
     this.person = null;
     this.frame = null;
     this.hidden = new Set(words(app.address.get("hidden")));
+    this.hiddenColumns = new Set(words(app.address.get("without")));
     this.layers = { ...LAYERS };
     for (const name of words(app.address.get("layers"))) if (name in LAYERS) this.layers[name] = !LAYERS[name];
     this.input = app.address.get("input") === "degraded" ? "degraded" : "clean";
@@ -83,10 +84,19 @@ export class Store extends EventTarget {
   }
 
   hide(key, hidden) {
-    if (hidden) this.hidden.add(key);
-    else this.hidden.delete(key);
-    this.app.remember({ hidden: [...this.hidden].join(",") || null });
+    this._keep("hidden", this.hidden, key, hidden);
     this.load();
+  }
+
+  /** Leaves a column out of the table of metrics, or shows it again. */
+  hideColumn(name, hidden) {
+    this._keep("without", this.hiddenColumns, name, hidden);
+  }
+
+  _keep(word, names, name, inside) {
+    if (inside) names.add(name);
+    else names.delete(name);
+    this.app.remember({ [word]: [...names].join(",") || null });
   }
 
   /** Fetches the frame that is shown; while one is on its way, only the newest is fetched after it. */

@@ -50,13 +50,10 @@ def horizon_rows(board: PredictionBoard) -> dict[str, Any]:
 
 
 def score_table(board: PredictionBoard) -> dict[str, Any]:
-    """Return the table of metrics, as `crowdbot predict` prints it, and the protocol.
-
-    The page has no room for the swept collisions; the exported scores have them.
-    """
+    """Return the table of metrics, with the columns of `crowdbot predict`, and the protocol."""
     shown = [(m, name, _score(m, results)) for m, name, results in _each(board)]
     scores = [score for _, _, score in shown if score is not None]
-    heads = tuple(name for name in (Score.heads(scores) if scores else ()) if name not in ("swept [%]", "radii [%]"))
+    heads = Score.heads(scores) if scores else ()
     rows = []
     for member, name, score in shown:
         if score is None:
