@@ -1,7 +1,9 @@
 """The house rules that a machine can check: names, public lists, light imports, tests that assert."""
 
 import ast
+import collections
 import doctest
+import functools
 import importlib
 import json
 import pkgutil
@@ -30,16 +32,48 @@ def _functions(tree):
     return [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
 
 
+@functools.cache
+def _tree(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@functools.cache
+def _classes():
+    """Return the classes of the package by name, with the files that define them."""
+    classes = collections.defaultdict(list)
+    for path in SOURCES:
+        for node in ast.walk(_tree(path)):
+            if isinstance(node, ast.ClassDef):
+                classes[node.name].append((path, node))
+    return classes
+
+
+def _methods(owner):
+    return [node for node in owner.body if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+
+
+def _overrides_documented(owner, name):
+    """Return whether a class of the package above ``owner`` documents a method of this name."""
+    for base in owner.bases:
+        found = _classes().get(ast.unparse(base).partition("[")[0].rpartition(".")[2], [])
+        if len(found) == 1 and found[0][1] is not owner:
+            above = found[0][1]
+            documented = any(m.name == name and ast.get_docstring(m) for m in _methods(above))
+            if documented or _overrides_documented(above, name):
+                return True
+    return False
+
+
 def _undocumented(path):
-    """Return the public names of a module that have no docstring; overloads need none."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    """Return the public names of a module that lack a docstring; overloads and documented overrides need none."""
+    tree = _tree(path)
     public = [n for n in tree.body if isinstance(n, ast.FunctionDef | ast.ClassDef) and not n.name.startswith("_")]
     methods = [
         m
         for c in public
         if isinstance(c, ast.ClassDef)
-        for m in c.body
-        if isinstance(m, ast.FunctionDef) and not m.name.startswith("_")
+        for m in _methods(c)
+        if not m.name.startswith("_") and not _overrides_documented(c, m.name)
     ]
     needed = [n for n in public + methods if not any("overload" in ast.unparse(d) for d in n.decorator_list)]
     module = [] if ast.get_docstring(tree) else ["the module"]

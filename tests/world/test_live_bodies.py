@@ -182,7 +182,7 @@ def test_props_come_and_go() -> None:
     assert world.engine_model is alone.engine_model
     world.remove_prop("prop0")
     drive(world, 3)
-    assert [type(prop).__name__ for prop in world.stage.props] == ["AbsentProp", "TableBody"]
+    assert [type(prop).__name__ for prop in world.stage.props] == ["AbsentProp", "Table"]
     assert len(world.plane_scene().walls) == len(alone.plane_scene().walls) - 4
 
 

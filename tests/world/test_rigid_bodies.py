@@ -182,10 +182,10 @@ def test_props_stand_where_they_are_put(prop: CubeBody | TableBody | TreeBody) -
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"x": math.nan}, "TreeBody: x = nan must be finite"),
-        ({"height": 0.0}, "TreeBody: height = 0.0 must be finite and above 0"),
-        ({"crown": -1.0}, "TreeBody: crown = -1.0 must be finite and above 0"),
-        ({"trunk": math.inf}, "TreeBody: trunk = inf must be finite and above 0"),
+        ({"x": math.nan}, 'Tree: x="nan" is not finite'),
+        ({"height": 0.0}, 'Tree: height="0.0" must be at least 0.001 m'),
+        ({"crown": -1.0}, 'Tree: crown="-1.0" must be at least 0.001 m'),
+        ({"trunk": math.inf}, 'Tree: trunk="inf" is not finite'),
     ],
 )
 def test_props_without_a_size_are_refused(values: dict[str, float], message: str) -> None:

@@ -251,7 +251,7 @@ def _change_stage(simulation: Simulation, trial: Trial) -> None:
     for number in removed:
         world.remove_prop(names[number])
     for prop in added:
-        world.add_prop(prop.prop())
+        world.add_prop(prop)
 
 
 def _scene(simulation: Simulation, trial: Trial) -> Any:

@@ -10,11 +10,21 @@ from typing import TYPE_CHECKING
 from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
+    from crowdbot.core.fields import UNWRITABLE as UNWRITABLE
+    from crowdbot.core.fields import attribute as attribute
+    from crowdbot.core.fields import check as check
+    from crowdbot.core.fields import children as children
+    from crowdbot.core.fields import outline as outline
+    from crowdbot.core.fields import quote_value as quote_value
     from crowdbot.trials.robot import JointTarget as JointTarget
     from crowdbot.trials.robot import joint_positions as joint_positions
     from crowdbot.trials.variants import add_element as add_element
     from crowdbot.trials.variants import needs_trust as needs_trust
     from crowdbot.trials.variants import remove_element as remove_element
+    from crowdbot.world import Cube as Cube
+    from crowdbot.world import Light as Light
+    from crowdbot.world import Table as Table
+    from crowdbot.world import Tree as Tree
 
     from .agent import Agent as Agent
     from .agent import AgentParameter as AgentParameter
@@ -47,13 +57,6 @@ if TYPE_CHECKING:
     from .faults.fault import SensorFault as SensorFault
     from .faults.fault import SlippingWheel as SlippingWheel
     from .faults.fault import have_same_kinds as have_same_kinds
-    from .fields import UNWRITABLE as UNWRITABLE
-    from .fields import attribute as attribute
-    from .fields import check as check
-    from .fields import children as children
-    from .fields import element_word as element_word
-    from .fields import outline as outline
-    from .fields import quote_value as quote_value
     from .files.code_references import code_digest as code_digest
     from .files.code_references import code_references as code_references
     from .files.code_references import is_code as is_code
@@ -93,6 +96,7 @@ if TYPE_CHECKING:
     from .notation import Points as Points
     from .notation import plain as plain
     from .parser import check_trial as check_trial
+    from .parser import element_word as element_word
     from .parser import parse_trial as parse_trial
     from .people import Group as Group
     from .people import SourceSpec as SourceSpec
@@ -107,10 +111,6 @@ if TYPE_CHECKING:
     from .placement.population import place as place
     from .placement.spawn_placement import GAP as GAP
     from .placement.spawn_placement import InitialPeople as InitialPeople
-    from .props import Cube as Cube
-    from .props import Light as Light
-    from .props import Table as Table
-    from .props import Tree as Tree
     from .randomized_model import RandomizedModel as RandomizedModel
     from .randomized_model import own as own
     from .recorded_people import RecordedPeople as RecordedPeople

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import TrialError, did_you_mean
+from crowdbot.core.fields import outline
 
 from .builtin_names import builtin_trials
 from .crowd import crowd_names
-from .fields import outline
 from .parser import parse_trial
 from .scenarios import PRESETS
 from .trial import Trial

@@ -11,9 +11,9 @@ from typing import Any
 
 from crowdbot import world
 from crowdbot.core import InputError, Walls
+from crowdbot.core.fields import attribute, check, mounted_field
 from crowdbot.models import CrowdModel, Mixture
 
-from .fields import attribute, check, mounted_field
 from .notation import NAME
 
 

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 
 from crowdbot import humans
 from crowdbot.core import InputError, did_you_mean
-
-from .fields import quote_value
+from crowdbot.core.fields import quote_value
 
 KINDS = {
     "man": ("man",),

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from crowdbot import world
 from crowdbot.core import InputError
+from crowdbot.core.fields import attribute, check, children
 
-from .fields import attribute, check, children
 from .notation import NAME, Points
 
 TOLERANCE = 0.3

@@ -10,7 +10,6 @@ from typing import Any
 
 from crowdbot.core import Element, TrialError
 
-from .fields import element_word
 from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
@@ -98,3 +97,14 @@ def _describe(thing: Any) -> str:
         return "obstacle"
     name = getattr(thing, "name", "")
     return element_word(type(thing)) + (f" {name!r}" if name else "")
+
+
+def element_word(cls: type) -> str:
+    """Return the word for the elements of a class in messages.
+
+    >>> from crowdbot.trials import RobotSpec, Spawner
+    >>> element_word(RobotSpec), element_word(Spawner)
+    ('robot', 'spawner')
+    """
+    name = cls.__name__.removesuffix("Spec")
+    return {"RobotGoal": "goal", "AgentParameter": "parameter", "ContactModel": "contact"}.get(name, name).lower()

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from crowdbot import world
 from crowdbot.core import InputError
+from crowdbot.core.fields import attribute, check, children
 
 from .distribution import Distribution
-from .fields import attribute, check, children
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 from .journey import Journey
 from .notation import Points

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from crowdbot.core import InputError
+from crowdbot.core.fields import attribute, check
 from crowdbot.data import AGENTS, FILE_OPTIONS, UNITS, parse_columns, split_columns
 from crowdbot.typing import Floats
 
 from .distribution import Distribution
-from .fields import attribute, check
 from .files.trial_files import recording_files, resolve_file, resolve_recording
 from .people import BODY_RADIUS
 

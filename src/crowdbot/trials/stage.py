@@ -14,15 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
-from crowdbot.world import add_rings
+from crowdbot.core.fields import attribute, check, children, quote_value
+from crowdbot.world import Appearance, Cube, Light, Table, Tree, add_rings
 
-from .fields import attribute, check, children, quote_value
 from .files.stage_maps import FARTHEST_FILE, FilePlacement, area_of, map_of
 from .files.trial_files import resolve_file
 from .ground.door import Door
 from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
 from .notation import Points
-from .props import Appearance, Cube, Light, Prop, Table, Tree
 
 if TYPE_CHECKING:
     from crowdbot.world import PhysicsStage
@@ -99,7 +98,9 @@ class Stage:
     )
     walls: tuple[Wall, ...] = children("wall", about="thin walls")
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")
-    props: tuple[Prop, ...] = children({"cube": Cube, "table": Table, "tree": Tree}, about="furniture and plants")
+    props: tuple[Cube | Table | Tree, ...] = children(
+        {"cube": Cube, "table": Table, "tree": Tree}, about="furniture and plants"
+    )
     lights: tuple[Light, ...] = children("light", about="lamps (default: daylight)", max=50)
     ground: tuple[GroundElement, ...] = children(
         {"ramp": Ramp, "stairs": Stairs, "platform": Platform, "threshold": Threshold}, about="uneven ground", max=1000
@@ -160,14 +161,12 @@ class Stage:
 
     def physical(self) -> PhysicsStage:
         """Return props, lights and heights for the physics world."""
-        from crowdbot.world import PhysicsStage, StageAppearance, read_building
+        from crowdbot.world import PhysicsStage, read_building
 
-        props, lights = tuple(prop.prop() for prop in self.props), tuple(light.light() for light in self.lights)
         doors = tuple(door.leaf() for door in self.doors)
-        looks = [item.appearance() for item in self.appearance] or [StageAppearance()]
         return PhysicsStage(
-            self.wall_height, self.friction, props, lights, ground=ground_of(self.ground), doors=doors,
-            appearance=looks[0],
+            self.wall_height, self.friction, self.props, self.lights, ground=ground_of(self.ground), doors=doors,
+            appearance=self.appearance[0] if self.appearance else Appearance(),
             building=read_building(resolve_file(self.building, self.folder, self.trust)) if self.building else None,
         )  # fmt: skip
 

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from crowdbot.core import Element, InputError
+from crowdbot.core.fields import attribute, check, quote_value
 
-from .fields import attribute, check, quote_value
 from .value_path import set_value, set_values
 
 MOST_VARIANTS = 10_000

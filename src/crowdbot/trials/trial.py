@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, InputError, Path2D, draw_svg
+from crowdbot.core.fields import attribute, check, child, children
 from crowdbot.models import CrowdModel
 
 from .agent import Agent, Avatar
 from .cameras.camera import Camera
 from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
-from .fields import attribute, check, child, children
 from .ground.plan import floor_plan
 from .journey import Exit, Journey, Portal
 from .people import SourceSpec, Spawner

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import Element, InputError, did_you_mean
+from crowdbot.core.fields import FieldSpec, outline, quote_value
 
-from .fields import FieldSpec, outline, quote_value
 from .robots.robot_parts import replace_robot
 
 STEP = re.compile(r"([A-Za-z][A-Za-z_-]*)(?:\[([^\[\]]+)\])?")

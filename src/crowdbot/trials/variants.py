@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from crowdbot.core import InputError, TrialError, format_xml
-from crowdbot.trials.fields import outline
+from crowdbot.core.fields import outline
 from crowdbot.trials.value_path import element_at, remove_at
 
 from .parser import parse_trial

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.trials.fields import attribute, check, mounted_field
+from crowdbot.core.fields import attribute, check, mounted_field
 from crowdbot.trials.notation import NAME
 from crowdbot.typing import Bools, Floats
 

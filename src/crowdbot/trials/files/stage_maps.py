@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, parse_yaml
+from crowdbot.core.fields import LARGEST
 from crowdbot.data import WIDEST_DEGREES
-from crowdbot.trials.fields import LARGEST
 
 from .trial_files import read_beside, resolve_file
 

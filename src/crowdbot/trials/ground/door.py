@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from crowdbot import world
 from crowdbot.core import InputError, parse_number
-from crowdbot.trials.fields import attribute, check
+from crowdbot.core.fields import attribute, check
 from crowdbot.trials.notation import Points
 
 

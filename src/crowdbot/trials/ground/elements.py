@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from crowdbot import world
-from crowdbot.trials.fields import attribute, check
+from crowdbot.core.fields import attribute, check
 
 
 @dataclass(frozen=True, kw_only=True)

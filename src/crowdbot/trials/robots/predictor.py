@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import InputError, kebab_case
+from crowdbot.core.fields import attribute, check, mounted_field, quote_value
 from crowdbot.navigation import MPCNavigator, Navigator
 from crowdbot.prediction import WEIGHTS_FIELDS, Predictor
-from crowdbot.trials.fields import attribute, check, mounted_field, quote_value
 from crowdbot.trials.files.trial_files import resolve_file
 
 SAME = 1e-6

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError
-from crowdbot.trials.fields import attribute, check
+from crowdbot.core.fields import attribute, check
 from crowdbot.world import REACTIONS, RobotReaction, RobotReactions
 
 

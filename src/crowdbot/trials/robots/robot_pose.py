@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError, UnreadableValue, sources_of
+from crowdbot.core.fields import attribute, check, quote_value
 from crowdbot.navigation import ExternalNavigator, Navigator
 from crowdbot.trials.agent import find_pose_source, load_poses
-from crowdbot.trials.fields import attribute, check, quote_value
 from crowdbot.trials.files.trial_files import resolve_file
 
 if TYPE_CHECKING:

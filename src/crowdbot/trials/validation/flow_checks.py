@@ -11,10 +11,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from crowdbot.core import InputError, UnreadableValue, did_you_mean, stream, unread_fields
+from crowdbot.core.fields import quote_value
 from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.crowd import Crowd, Crowds
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Direction, Exit, Point, Portal, Zone
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import SourceSpec, Spawner

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
+from crowdbot.core.fields import quote_value
 from crowdbot.navigation import PathPlanner
 from crowdbot.trials.agent import Avatar
 from crowdbot.trials.cameras.camera import Camera
-from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Zone
 from crowdbot.trials.notation import Points
 from crowdbot.trials.placement.population import gap_to_robot, gap_to_walls, place, smallest_reach, start_outline

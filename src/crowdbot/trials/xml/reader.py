@@ -25,8 +25,8 @@ from crowdbot.core import (
     nearest_name,
     parse_number,
 )
+from crowdbot.core.fields import FieldSpec, PluginSpec, outline, quote_value
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
 from crowdbot.trials.notation import unit_hint
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 

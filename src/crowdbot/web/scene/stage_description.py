@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial
 from crowdbot.typing import Floats
-from crowdbot.world import CubeBody, TableBody, TreeBody
+from crowdbot.world import Cube, Table, Tree
 
 MARGIN = 1.0
 """Free space [m] around what is shown."""
@@ -59,11 +59,11 @@ def _door(leaf: Any) -> dict[str, Any]:
 
 def _prop(one: Any) -> dict[str, Any]:
     found: dict[str, Any] = {"x": one.x, "y": one.y, "heading": one.heading, "movable": one.movable}
-    if isinstance(one, CubeBody):
+    if isinstance(one, Cube):
         return found | {"kind": "cube", "size": one.size, "color": list(one.color)}
-    if isinstance(one, TableBody):
+    if isinstance(one, Table):
         return found | {"kind": "table", "length": one.length, "width": one.width, "height": one.height}
-    if isinstance(one, TreeBody):
+    if isinstance(one, Tree):
         return found | {"kind": "tree", "height": one.height, "trunk": one.trunk, "crown": one.crown}
     return found | {"kind": "none"}
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from crowdbot.core import Element, InputError
+from crowdbot.core.fields import attribute, check
 from crowdbot.typing import Floats
 from crowdbot.world.buildings.building import Building
 from crowdbot.world.doors.leaf import DoorLeaf
 from crowdbot.world.ground.ground import Ground
-from crowdbot.world.stage_appearance import StageAppearance
+from crowdbot.world.stage_appearance import Appearance
 from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
@@ -21,28 +23,21 @@ from .layers import DYNAMIC, STANDING
 Color = tuple[float, float, float]
 LEG = 0.05
 """Width of the legs and thickness of the top of a table [m]."""
-DAYLIGHT = StageAppearance()
+DAYLIGHT = Appearance()
 BARK = "0.45 0.33 0.22 1"
 LEAF = "0.33 0.52 0.27 1"
 
 
 @dataclass(frozen=True)
 class PropBody(ABC):
-    """An object on the floor at ``x``, ``y`` [m] with a ``heading`` [rad]."""
+    """An object on the floor; an element of the stage of a trial."""
 
-    x: float
-    y: float
-    heading: float = 0.0
+    x: float = attribute(about="x of the centre", unit="m")
+    y: float = attribute(about="y of the centre", unit="m")
+    heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
 
     def __post_init__(self) -> None:
-        for part in fields(self):
-            value = getattr(self, part.name)
-            number = not isinstance(value, bool | str | tuple)
-            signed = part.name in ("x", "y", "heading")
-            if number and not (math.isfinite(value) and (signed or value > 0.0)):
-                raise InputError(
-                    f"{type(self).__name__}: {part.name} = {value} must be finite{'' if signed else ' and above 0'}"
-                )
+        check(self)
 
     @property
     def movable(self) -> bool:
@@ -58,49 +53,51 @@ class PropBody(ABC):
     def body(self, name: str) -> Element:
         """Return the object as an MJCF body."""
 
+    @property
     @abstractmethod
+    def ring(self) -> Floats:
+        """Outline ``[N, 2]`` [m], counter-clockwise; for a tree the outline of its trunk."""
+
     def outline(self) -> Floats | None:
         """Return the outline ``[N, 2]`` [m] that people avoid, counter-clockwise; None: people do not avoid it."""
+        return self.ring
 
     def _standing(self, name: str, height: float) -> Element:
         place = {"pos": row((self.x, self.y, height)), "euler": row((0.0, 0.0, self.heading))}
         return Element("body", {"name": name, **place})
 
-    def _ring(self, length: float, width: float) -> Floats:
+    def _rectangle(self, length: float, width: float) -> Floats:
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         corners = 0.5 * np.array([[-length, -width], [length, -width], [length, width], [-length, width]])
         return np.asarray(corners @ np.array([[cos, sin], [-sin, cos]]) + (self.x, self.y))
 
 
 @dataclass(frozen=True)
-class CubeBody(PropBody):
-    """A box of ``size`` [m] and ``mass`` [kg] on the floor; it can be pushed unless it is ``fixed``.
+class Cube(PropBody):
+    """A box on the floor. In the physics world robots and people can push it unless it is fixed.
 
     Raises:
-        InputError: a number is not finite, or a size, mass or friction is not above 0.
+        InputError: a value is not allowed.
 
-    >>> CubeBody(1.0, 2.0, size=0.4).movable
-    True
+    >>> Cube(1.0, 2.0, size=0.4).movable, Cube(x=1, y=2, size=0.4).ring.round(9).tolist()[0]
+    (True, [0.8, 1.8])
     """
 
-    size: float = 0.5
-    mass: float = 10.0
-    friction: float = 0.5
-    fixed: bool = False
-    color: Color = (0.80, 0.62, 0.38)
+    color: ClassVar[Color] = (0.80, 0.62, 0.38)
+    size: float = attribute(0.5, about="edge length", unit="m", min=0.001, max=100.0)
+    mass: float = attribute(10.0, about="mass", unit="kg", min=0.001, max=1e5)
+    friction: float = attribute(0.5, about="friction coefficient on the floor", exclusive_min=0.0, max=10.0)
+    fixed: bool = attribute(False, about="whether it is fixed to the floor")
 
     @property
     def movable(self) -> bool:
-        """Whether it can be pushed."""
         return not self.fixed
 
     @property
     def weight(self) -> float:
-        """Mass in a collision [kg]."""
         return math.inf if self.fixed else self.mass
 
     def body(self, name: str) -> Element:
-        """Return the object as an MJCF body."""
         half = 0.5 * self.size
         element = self._standing(name, half)
         if not self.fixed:
@@ -118,21 +115,24 @@ class CubeBody(PropBody):
         element.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **layer}))
         return element
 
+    @property
+    def ring(self) -> Floats:
+        return self._rectangle(self.size, self.size)
+
     def outline(self) -> Floats | None:
-        """Return the outline that people avoid; None for a movable box."""
-        return self._ring(self.size, self.size) if self.fixed else None
+        return self.ring if self.fixed else None  # people do not avoid a movable box
 
 
 @dataclass(frozen=True)
-class TableBody(PropBody):
-    """A fixed table: a top of ``length``, ``width`` at ``height`` [m] on four legs."""
+class Table(PropBody):
+    """A table, fixed to the floor."""
 
-    length: float = 1.6
-    width: float = 0.8
-    height: float = 0.74
+    heading: float = attribute(0.0, about="heading of the long side, counter-clockwise from +x", unit="rad")
+    length: float = attribute(1.6, about="length of the top", unit="m", exclusive_min=0.05, max=100.0)
+    width: float = attribute(0.8, about="width of the top", unit="m", exclusive_min=0.05, max=100.0)
+    height: float = attribute(0.74, about="above the floor", unit="m", exclusive_min=0.05, max=100.0)
 
     def body(self, name: str) -> Element:
-        """Return the object as an MJCF body."""
         element = self._standing(name, 0.0)
         shared = {"type": "box", "rgba": "0.62 0.44 0.30 1", "group": "0", **STANDING}
         top = {"pos": row((0.0, 0.0, self.height - LEG / 2)), "size": row((self.length / 2, self.width / 2, LEG / 2))}
@@ -144,21 +144,20 @@ class TableBody(PropBody):
             element.children.append(Element("geom", {"name": f"{name}/{number + 1}", **shared, **leg}))
         return element
 
-    def outline(self) -> Floats | None:
-        """Return the outline that people avoid."""
-        return self._ring(self.length, self.width)
+    @property
+    def ring(self) -> Floats:
+        return self._rectangle(self.length, self.width)
 
 
 @dataclass(frozen=True)
-class TreeBody(PropBody):
-    """A tree of ``height`` [m]; ``trunk`` and ``crown`` are radii [m]."""
+class Tree(PropBody):
+    """A tree, fixed to the floor."""
 
-    height: float = 5.0
-    trunk: float = 0.15
-    crown: float = 1.4
+    height: float = attribute(5.0, about="height", unit="m", min=0.001, max=100.0)
+    trunk: float = attribute(0.15, about="radius of the trunk", unit="m", min=0.001, max=10.0)
+    crown: float = attribute(1.4, about="radius of the crown", unit="m", min=0.001, max=50.0)
 
     def body(self, name: str) -> Element:
-        """Return the object as an MJCF body."""
         element = self._standing(name, 0.0)
         stem = max(0.3 * self.height, self.height - 1.6 * self.crown)
         wood = {"type": "cylinder", "size": row((self.trunk, stem / 2)), "pos": row((0.0, 0.0, stem / 2))}
@@ -169,9 +168,9 @@ class TreeBody(PropBody):
         element.children.append(Element("geom", {"name": f"{name}/1", "contype": "0", "conaffinity": "0", **leaves}))
         return element
 
-    def outline(self) -> Floats | None:
-        """Return the outline that people avoid."""
-        return self._ring(2.0 * self.trunk, 2.0 * self.trunk)
+    @property
+    def ring(self) -> Floats:
+        return self._rectangle(2.0 * self.trunk, 2.0 * self.trunk)
 
 
 @dataclass(frozen=True)
@@ -182,40 +181,42 @@ class AbsentProp(PropBody):
     y: float = 0.0
 
     def body(self, name: str) -> Element:
-        """Return an empty body."""
         return Element("body", {"name": name})
 
+    @property
+    def ring(self) -> Floats:
+        return np.zeros((0, 2))
+
     def outline(self) -> Floats | None:
-        """Return None: people do not avoid it."""
         return None
 
 
 @dataclass(frozen=True)
-class LightSource:
-    """A downward light at ``x``, ``y``, ``z`` [m] with a brightness from 0 to 1.
+class Light:
+    """A lamp that shines down. A stage without lamps has daylight.
 
     Raises:
-        InputError: a number is not finite, or the brightness is outside 0 to 1.
+        InputError: a value is not allowed.
     """
 
-    x: float
-    y: float
-    z: float = 4.0
-    brightness: float = 0.5
-    shadows: bool = False
+    x: float = attribute(about="x coordinate", unit="m")
+    y: float = attribute(about="y coordinate", unit="m")
+    z: float = attribute(4.0, about="above the floor", unit="m", exclusive_min=0.0, max=1000.0)
+    brightness: float = attribute(0.5, about="brightness, 0 to 1", min=0.0, max=1.0)
+    shadows: bool = attribute(False, about="whether it casts shadows")
 
     def __post_init__(self) -> None:
-        for name in ("x", "y", "z"):
-            if not math.isfinite(getattr(self, name)):
-                raise InputError(f"LightSource: {name} = {getattr(self, name)} m must be finite")
-        if not 0.0 <= self.brightness <= 1.0:
-            raise InputError(f"LightSource: brightness = {self.brightness} must be from 0 to 1")
+        check(self)
 
     def element(self, name: str) -> Element:
         """Return the light as an MJCF element."""
         values = {"name": name, "pos": row((self.x, self.y, self.z)), "dir": "0 0 -1", "cutoff": "85"}
         values |= {"diffuse": row([self.brightness] * 3), "specular": row([0.2 * self.brightness] * 3)}
         return Element("light", values | {"castshadow": str(self.shadows).lower()})
+
+
+CubeBody, TableBody, TreeBody, LightSource = Cube, Table, Tree, Light
+"""Names of the classes in worlds."""
 
 
 @dataclass(frozen=True)
@@ -236,19 +237,19 @@ class PhysicsStage:
     Raises:
         InputError: the height or the friction is not finite and above 0.
 
-    >>> PhysicsStage(props=(CubeBody(1.0, 0.0), TableBody(3.0, 0.0))).outlines()[0].tolist()
+    >>> PhysicsStage(props=(Cube(1.0, 0.0), Table(3.0, 0.0))).outlines()[0].tolist()
     [[2.2, -0.4], [3.8, -0.4], [3.8, 0.4], [2.2, 0.4]]
     """
 
     wall_height: float = 2.5
     friction: float = 1.0
     props: tuple[PropBody, ...] = ()
-    lights: tuple[LightSource, ...] = ()
+    lights: tuple[Light, ...] = ()
     floor_color: Color = (0.80, 0.80, 0.78)
     wall_color: Color = (0.86, 0.84, 0.80)
     ground: Ground | None = None
     doors: tuple[DoorLeaf, ...] = ()
-    appearance: StageAppearance = DAYLIGHT
+    appearance: Appearance = DAYLIGHT
     building: Building | None = None
 
     def __post_init__(self) -> None:
@@ -265,9 +266,9 @@ class PhysicsStage:
 def without_prop(stage: PhysicsStage, number: int) -> PhysicsStage:
     """Return the stage without a prop; the numbers of the others do not change.
 
-    >>> stage = PhysicsStage(props=(CubeBody(1.0, 0.0), TableBody(3.0, 0.0)))
+    >>> stage = PhysicsStage(props=(Cube(1.0, 0.0), Table(3.0, 0.0)))
     >>> [type(prop).__name__ for prop in without_prop(stage, 0).props], len(without_prop(stage, 1).props)
-    (['AbsentProp', 'TableBody'], 1)
+    (['AbsentProp', 'Table'], 1)
     """
     props = [AbsentProp() if k == number else prop for k, prop in enumerate(stage.props)]
     while props and isinstance(props[-1], AbsentProp):

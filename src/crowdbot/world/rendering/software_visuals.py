@@ -15,8 +15,8 @@ from crowdbot.typing import Bytes, Floats, Ints
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel
 from crowdbot.world.physics.people_motion import PeopleMotion
-from crowdbot.world.physics.stage import LightSource, PhysicsStage
-from crowdbot.world.stage_appearance import StageAppearance
+from crowdbot.world.physics.stage import Light, PhysicsStage
+from crowdbot.world.stage_appearance import Appearance
 
 from .camera import CameraImages, CameraView
 from .carried_objects import carried_parts, holds
@@ -490,10 +490,10 @@ def _stored_texture(model: Any, texture: int) -> NDArray[np.uint8]:
     return np.asarray(Image.fromarray(np.ascontiguousarray(image)).resize((across, down), Image.Resampling.BILINEAR))
 
 
-def illumination(appearance: StageAppearance, lights: tuple[LightSource, ...]) -> Illumination:
+def illumination(appearance: Appearance, lights: tuple[Light, ...]) -> Illumination:
     """Return the light of a stage: daylight, or lamps with soft shadows straight below.
 
-    >>> illumination(StageAppearance(), ()).sun.shape
+    >>> illumination(Appearance(), ()).sun.shape
     (4, 3)
     """
     light, above, horizon, zenith, glow, cloud, white, soft = SKIES[appearance.sky]

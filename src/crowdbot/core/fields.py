@@ -17,7 +17,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import Bounds, InputError, did_you_mean
+from .errors import InputError, did_you_mean
+from .model_parameter import Bounds
 
 LARGEST = 1e6
 """Largest number in a trial, in any unit."""
@@ -297,17 +298,6 @@ def _convert_attribute(element: Any, part: FieldSpec, value: Any) -> Any:
     if type(value) is part.kind:
         return value
     raise InputError(f"{type(element).__name__}: {part.name}={quote_value(value)} is not a {part.kind.__name__}")
-
-
-def element_word(cls: type) -> str:
-    """Return the word for the elements of a class in messages.
-
-    >>> from crowdbot.trials import RobotSpec, Spawner
-    >>> element_word(RobotSpec), element_word(Spawner)
-    ('robot', 'spawner')
-    """
-    name = cls.__name__.removesuffix("Spec")
-    return {"RobotGoal": "goal", "AgentParameter": "parameter", "ContactModel": "contact"}.get(name, name).lower()
 
 
 def quote_value(value: Any, limit: int = 60) -> str:
