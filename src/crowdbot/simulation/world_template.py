@@ -189,7 +189,7 @@ class WorldTemplate:
             "dt": trial.step,
             "robot_margin": trial.robot_margin,
             "router": self._router,
-            "contact": None if trial.contact is None else trial.contact.bodies(),
+            "contact": trial.contact,
             "limits": None if trial.limits is None else trial.limits.limits(),
             "sources": self._sources,
             "exits": [way.out() for way in trial.exits],

@@ -106,24 +106,8 @@ class Routing:
         return world.Router.of(walls, self.radius, self.unreachable)
 
 
-@dataclass(frozen=True, kw_only=True)
-class ContactSpec:
-    """Contact between people: overlapping bodies are pushed apart, and nobody is pushed into a wall."""
-
-    variant: str = attribute(
-        "position",
-        about="contact model: overlaps are resolved by position or by a force",
-        choices=("position", "force"),
-    )
-    stiffness: float = attribute(62.5, about="stiffness per mass", unit="1/s2", exclusive_min=0.0, max=1e9)
-    iterations: int = attribute(8, about="position iterations per step", min=1, max=1000)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    def bodies(self) -> world.ContactModel:
-        """Return the contact model of a world."""
-        return world.ContactModel(self.variant, self.stiffness, self.iterations)
+ContactSpec = world.ContactModel
+"""Name of the element."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,7 +19,6 @@ from crowdbot.navigation import (
 from crowdbot.recording import branch, record, replay
 from crowdbot.simulation import simulate, simulate_seeds
 from crowdbot.trials import RobotGoal, RobotSpec, load_trial, parse_trial, trial_xml
-from crowdbot.trials.robot import SafetySpec
 from crowdbot.world import DifferentialDrive
 
 LAYER = SafetyLayer(approach=1.6, response=0.1, intrusion=0.1, deceleration=1.0, restart=1.0)
@@ -91,15 +90,15 @@ def test_a_wrapped_navigator_keeps_the_contract():
 
 @pytest.mark.parametrize("name", ["response", "slow", "deceleration", "restart"])
 def test_a_wrong_number_is_explained(name):
-    with pytest.raises(InputError, match=f"SafetyLayer: {name} = -1"):
+    with pytest.raises(InputError, match=f'SafetyLayer: {name}="-1.0" must be'):
         SafetyLayer(**{name: -1.0})
 
 
 def test_a_trial_has_the_layer_and_keeps_it_in_xml():
     trial = GUARDED.put_into(load_trial("frontal"))
-    assert trial.robots[0].safety == SafetySpec()
+    assert trial.robots[0].safety == SafetyLayer()
     assert parse_trial(trial_xml(trial)) == trial
-    assert load_trial("frontal", **{"robot/safety/slow": 0.2}).robots[0].safety == SafetySpec(slow=0.2)
+    assert load_trial("frontal", **{"robot/safety/slow": 0.2}).robots[0].safety == SafetyLayer(slow=0.2)
 
 
 def test_an_external_robot_has_no_layer():
@@ -108,7 +107,7 @@ def test_an_external_robot_has_no_layer():
     with pytest.raises(InputError, match="has <safety> in addition"):
         RobotSpec(
             x=0.0, y=0.0, goal=RobotGoal(1.0, 0.0), drive=DifferentialDrive(), navigator=ExternalNavigator(),
-            safety=SafetySpec(),
+            safety=SafetyLayer(),
         )  # fmt: skip
 
 

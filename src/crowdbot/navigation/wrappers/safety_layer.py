@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import Twist, check_number
+from crowdbot.core import Twist
+from crowdbot.core.fields import attribute, check
 from crowdbot.navigation.action import Action
 from crowdbot.navigation.decisions import Decisions
 from crowdbot.navigation.navigator import Navigator
@@ -19,10 +20,6 @@ from crowdbot.navigation.wall_arrays import wall_arrays
 from crowdbot.typing import Floats
 
 TINY = 1e-9
-FIELDS = {
-    "approach": "m/s", "response": "s", "intrusion": "m", "side": "m", "warning": "m", "restart": "s",
-}  # fmt: skip
-"""Fields that must not be negative."""
 
 
 class SafetyState(NamedTuple):
@@ -41,7 +38,7 @@ class SafetyState(NamedTuple):
 
 @dataclass(frozen=True)
 class SafetyLayer:
-    """Limits the twist of a navigator by what a certified safety function would.
+    """Safety layer between the navigator and the drive, which limits twists as a certified safety function would.
 
     * *Protective field*: a strip in the direction of motion, as wide as the robot and ``side`` on both sides. It is as
       long as the robot needs to stop, ``v response + v^2 / (2 deceleration) + intrusion``. If anything is in it, a
@@ -75,20 +72,31 @@ class SafetyLayer:
     (1.235, 0.5)
     """
 
-    approach: float = 1.6
-    response: float = 0.1
-    intrusion: float = 0.1
-    deceleration: float = 1.0
-    side: float = 0.05
-    warning: float = 0.5
-    slow: float = 0.3
-    restart: float = 1.0
+    approach: float = attribute(
+        1.6, about="speed at which people approach, K of ISO 13855", unit="m/s", min=0.0, max=10.0
+    )
+    response: float = attribute(
+        0.1, about="time from the measurement to the beginning of braking", unit="s", min=0.0, max=10.0
+    )
+    intrusion: float = attribute(
+        0.1, about="distance for late or inexact detection, C of ISO 13855", unit="m", min=0.0, max=10.0
+    )
+    deceleration: float = attribute(1.0, about="braking deceleration", unit="m/s2", exclusive_min=0.0, max=1000.0)
+    side: float = attribute(
+        0.05, about="width of the fields beyond the robot on each side", unit="m", min=0.0, max=10.0
+    )
+    warning: float = attribute(
+        0.5, about="length of the warning field beyond the protective field", unit="m", min=0.0, max=100.0
+    )
+    slow: float = attribute(
+        0.3, about="largest speed with a violated warning field", unit="m/s", exclusive_min=0.0, max=10.0
+    )
+    restart: float = attribute(
+        1.0, about="time without a violation before the robot moves again", unit="s", min=0.0, max=3600.0
+    )
 
     def __post_init__(self) -> None:
-        for name, unit in FIELDS.items():
-            check_number("SafetyLayer", name, getattr(self, name), unit, min=0.0)
-        for name, unit in {"deceleration": "m/s2", "slow": "m/s"}.items():
-            check_number("SafetyLayer", name, getattr(self, name), unit, exclusive_min=0.0)
+        check(self)
 
     def around(self, navigator: Navigator) -> Navigator:
         """Return the navigator behind this layer.

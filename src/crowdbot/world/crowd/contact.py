@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import CHUNK, SMALL, InputError, Neighbors, Scene, did_you_mean, kernel, prange
+from crowdbot.core import CHUNK, SMALL, Neighbors, Scene, kernel, prange
+from crowdbot.core.fields import attribute, check
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
 from crowdbot.core.outlines import Outlines, point_to_outline, to_frame
@@ -102,7 +103,6 @@ def _insert(near: Rows, gap2: Floats, number: Rows, a: int, b: int, d2: float) -
     return True
 
 
-VARIANTS = ("position", "force")
 MOST = 24
 """Maximum number of neighbors that push a person at the same time, nearest first."""
 TOUCH = 1.0 - 1e-4
@@ -315,7 +315,7 @@ def _nearest_wall(wall: Floats, first: Rows, member: Rows, frame: Floats, x: flo
 
 @dataclass(frozen=True)
 class ContactModel:
-    """Resolution of overlaps after a step of the crowd: people are pushed apart and out of walls.
+    """Contact between people: overlapping bodies are pushed apart, and nobody is pushed into a wall.
 
     External agents push others but are not pushed. Invisible agents do not push. A person is moved by at most their
     radius per step and never through a wall, at any time step. The push changes the velocity, up to the maximum speed.
@@ -334,18 +334,16 @@ class ContactModel:
     [[[-0.05, 0.0], [0.45, 0.0]]]
     """
 
-    variant: str = "position"
-    stiffness: float = 62.5
-    iterations: int = 8
+    variant: str = attribute(
+        "position",
+        about="contact model: overlaps are resolved by position or by a force",
+        choices=("position", "force"),
+    )
+    stiffness: float = attribute(62.5, about="stiffness per mass", unit="1/s2", exclusive_min=0.0, max=1e9)
+    iterations: int = attribute(8, about="position iterations per step", min=1, max=1000)
 
     def __post_init__(self) -> None:
-        if self.variant not in VARIANTS:
-            near = did_you_mean(str(self.variant), VARIANTS)
-            raise InputError(f"ContactModel: variant {self.variant!r} is unknown{near}; use {' or '.join(VARIANTS)}")
-        if not 0.0 < self.stiffness <= 1e9:
-            raise InputError(f"ContactModel: stiffness {self.stiffness} 1/s^2 must be above 0 and at most 1e9 1/s^2")
-        if not 1 <= self.iterations <= 1000:
-            raise InputError(f"ContactModel: iterations = {self.iterations} must be from 1 to 1000")
+        check(self)
 
     def resolve_overlaps(
         self,
