@@ -80,6 +80,19 @@ def _undocumented(path):
     return module + [n.name for n in needed if not ast.get_docstring(n)]
 
 
+def test_an_override_of_a_documented_method_has_no_line_of_its_own():
+    """What differs is a comment, or a longer docstring with its errors or arguments."""
+    breaches = [
+        f"{path.name}:{method.lineno} {owner.name}.{method.name}"
+        for places in _classes().values()
+        for path, owner in places
+        for method in _methods(owner)
+        if method.name != "__init__" and len(method.body) > 1 and ast.get_docstring(method)
+        if method.body[0].lineno == method.body[0].end_lineno and _overrides_documented(owner, method.name)
+    ]
+    assert breaches == []
+
+
 def test_every_module_and_public_name_is_documented():
     breaches = {str(path.relative_to(ROOT / "src")): _undocumented(path) for path in SOURCES}
     assert {path: names for path, names in breaches.items() if names} == {}

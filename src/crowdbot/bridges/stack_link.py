@@ -70,7 +70,6 @@ class StackPort(BridgePort):
         super().__init__(trial, transports)
 
     def describe(self, trial: Trial) -> RobotInterface:
-        """Return the topics of the robots of the software."""
         whole = RobotInterface.of(trial)
         inputs = tuple(
             input_topic
@@ -81,12 +80,10 @@ class StackPort(BridgePort):
         return dataclasses.replace(whole, outputs=tuple(outputs), inputs=inputs, services=())
 
     def begin(self, simulation: Simulation) -> None:
-        """Send the map, the goals and the first instant of a run."""
         self._goals.clear()
         super().begin(simulation)
 
     def publish(self, simulation: Simulation) -> None:
-        """Send the messages of the current instant, and goals that have changed."""
         self._send(list(self._new_goals(simulation)))
         super().publish(simulation)
 

@@ -58,7 +58,6 @@ class Absolute(Cost):
     """
 
     def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
-        """Return the mean distance of every candidate and person, see :meth:`Cost.measure`."""
         past = tracks.past
         away = tracks.once - past.position[:, 1:]
         counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
@@ -76,7 +75,6 @@ class Progressive(Cost):
     """
 
     def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
-        """Return the mean distance of every candidate and person, see :meth:`Cost.measure`."""
         past = tracks.past
         away = tracks.stepwise - past.position[:, 2:]
         counted = past.present[:, 2:] & past.present[:, 1:-1] & ~past.robot[:, None]
@@ -116,7 +114,6 @@ class InterPedestrian(Cost):
     """
 
     def measure(self, tracks: ResimulatedTracks) -> Floats:
-        """Return the mean difference of every candidate and person, see :meth:`Cost.measure`."""
         past, simulated = tracks.past, np.ascontiguousarray(tracks.once)
         counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
         others = np.where(counted, counted.sum(axis=2, keepdims=True) - 1, 0).sum(axis=1)
@@ -153,7 +150,6 @@ class WeightedSum(Cost):
             raise InputError(f"weighted-sum: weights {self.weights} must be finite, at least 0 and not all 0")
 
     def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
-        """Return the weighted sum for every candidate and person, see :meth:`Cost.measure`."""
         return reduce(
             np.add,
             (weight * part.measure(tracks) for part, weight in zip(self.parts, self.weights, strict=True)),

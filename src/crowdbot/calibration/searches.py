@@ -48,7 +48,6 @@ class Geometric(Cooling):
             )
 
     def at(self, progress: float) -> float:
-        """Return the temperature, see :meth:`Cooling.at`."""
         return float(self.start * (self.end / self.start) ** progress)
 
 
@@ -108,7 +107,6 @@ class Annealing(Search):
             raise InputError(f"annealing: moved = {self.moved} of the people must be above 0 and at most 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Run all chains, see :meth:`Search.search`."""
         first = state.sample_uniform(min(self.chains, state.remaining))
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
@@ -204,7 +202,6 @@ class CMAES(Search):
             raise InputError(f"cmaes: width = {self.width} sides of the box must be above 0 and at most 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Ask all optimisers, evaluate, tell them, see :meth:`Search.search`."""
         side = np.where(state.span > 0.0, state.span, 1.0)
         best, _ = own_best(population, cost)
         begin = np.clip((best[0] - state.low) / side, 0.0, 1.0)
@@ -376,7 +373,6 @@ class Genetic(Search):
             raise InputError(f"genetic: bred = {self.bred} of the people must be above 0 and at most 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Run the generations, see :meth:`Search.search`."""
         first = self._first(state, population)
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
@@ -471,7 +467,6 @@ class Greedy(Search):
             raise InputError(f"greedy: trials = {self.trials} new values must be at least 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Visit the parameters one by one, see :meth:`Search.search`."""
         order = self._order(state)
         visit = 0
         while state.remaining:
@@ -529,7 +524,6 @@ class RandomSearch(Search):
             raise InputError(f"random-search: batch = {self.batch} candidates must be at least 1")
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Draw and evaluate until one evaluation is left, see :meth:`Search.search`."""
         best, least = own_best(population, cost)
         while state.remaining > 1:
             drawn = state.sample_uniform(min(self.batch, state.remaining - 1))

@@ -234,7 +234,7 @@ class PacedClock(Clock):
             self._lag = None
 
     def advance(self) -> None:
-        """Advance by one tick and sleep until it is due; a paused clock advances immediately, for single steps."""
+        # advance by one tick and sleep until it is due; a paused clock advances immediately, for single steps
         if self._lag is not None:
             super().advance()
             return

@@ -75,11 +75,9 @@ class EncounterStudy(Study):
         return values, {}, {"person": person, "robot": machine, **walls}
 
     def draw(self, trials: Sequence[TrialMeasures]) -> Figure:
-        """Return the ways in each condition."""
         return draw_paths(trials)
 
     def participant(self, number: int) -> EmulatedPerson:
-        """Return the emulated participant of a number."""
         return EmulatedPedestrian.draw(number)
 
 

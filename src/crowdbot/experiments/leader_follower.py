@@ -215,7 +215,6 @@ class LeaderFollowerStudy(Study):
         return values, {"leader": roles.leader}, curves
 
     def draw(self, trials: Sequence[TrialMeasures]) -> Figure:
-        """Return the motion of leader and follower in the first trial of each condition."""
         import matplotlib.pyplot as plt
 
         first = {trial.condition: trial for trial in reversed(trials)}
@@ -233,7 +232,6 @@ class LeaderFollowerStudy(Study):
         return figure
 
     def participant(self, number: int) -> EmulatedPerson:
-        """Return the emulated participant of a number."""
         return EmulatedParticipant.draw(number)
 
 

@@ -107,7 +107,6 @@ class Choice(Question):
 
     @property
     def hint(self) -> str:
-        """The options."""
         values = [option.value for option in self.options]
         return f"some of {', '.join(values)}" if self.multiple else " or ".join(values)
 
@@ -117,7 +116,6 @@ class Choice(Question):
         return any(option.ends for option in self.options if option.value in given)
 
     def problem(self) -> str:
-        """Return duplicate options as well."""
         values = [option.value for option in self.options]
         twice = [value for k, value in enumerate(values) if value in values[:k]]
         return Question.problem(self) or (f"has the option {twice[0]!r} twice; values must differ" if twice else "")
@@ -163,12 +161,10 @@ class Scale(Question):
 
     @property
     def hint(self) -> str:
-        """The range and the labels of its ends."""
         ends = [f"{self.low} {self.low_text}".rstrip(), f"{self.high} {self.high_text}".rstrip()]
         return f"a whole number from {ends[0]} to {ends[1]}"
 
     def problem(self) -> str:
-        """Return invalid limits as well."""
         return Question.problem(self) or (
             "" if self.low < self.high else f"has low={self.low}, which must be below high={self.high}"
         )
@@ -197,7 +193,6 @@ class Number(Question):
 
     @property
     def hint(self) -> str:
-        """The limits."""
         words = ["a whole number" if self.integer else "a number"]
         words += [f"in {self.unit}"] if self.unit else []
         words += [f"at least {plain(self.min)}"] if self.min is not None else []
@@ -205,7 +200,6 @@ class Number(Question):
         return ", ".join(words)
 
     def problem(self) -> str:
-        """Return invalid limits as well."""
         empty = self.min is not None and self.max is not None and self.min > self.max
         return Question.problem(self) or ("has min above max" if empty else "")
 
@@ -237,7 +231,6 @@ class FreeText(Question):
 
     @property
     def hint(self) -> str:
-        """The maximum length."""
         return f"a text of at most {self.max_length} characters"
 
     def _taken(self, value: Any) -> Answer:

@@ -49,15 +49,13 @@ class ConsoleRespondent(Respondent):
         self._stream, self._write, self.patient = stream, write, patient
 
     def answer(self, screen: str, question: Question) -> str:
-        """Read a line."""
         return self._line(f"{screen}.{question.name}")
 
     def go_on(self) -> None:
-        """Read and discard a line."""
         self._line("the Enter key")
 
     def choose(self, words: tuple[str, ...]) -> str:
-        """Read lines until one is an option, or the start of one."""
+        # read lines until one is an option, or the start of one
         while True:
             given = self._line("a choice").strip().lower()
             fits = [word for word in words if given and word.startswith(given)]
@@ -116,7 +114,6 @@ class ScriptedRespondent(Respondent):
         return cls(answers, experiment)
 
     def answer(self, screen: str, question: Question) -> str:
-        """Return the answer to this question of this screen, or to this question of any screen."""
         value = self._answers.get(f"{screen}.{question.name}", self._answers.get(question.name))
         if value is None:
             return ""
@@ -126,7 +123,6 @@ class ScriptedRespondent(Respondent):
         """Do not wait."""
 
     def choose(self, words: tuple[str, ...]) -> str:
-        """Close the program."""
         return "leave"
 
 
@@ -141,7 +137,7 @@ class EmulatedRespondent(Respondent):
         self._rng = stream(seed, "emulated respondent", participant)
 
     def answer(self, screen: str, question: Question) -> str:
-        """Return a random answer; a text says that it is a rehearsal."""
+        # a random answer; a text says that it is a rehearsal
         match question:
             case Choice(options=options):
                 names = [option.value for option in options if not option.ends]
@@ -160,5 +156,4 @@ class EmulatedRespondent(Respondent):
         """Do not wait."""
 
     def choose(self, words: tuple[str, ...]) -> str:
-        """Close the program."""
         return "leave"

@@ -63,7 +63,6 @@ class PlainSampling(Sampling):
     batch: int = 1024
 
     def search(self, runner: SampleRunner, rng: np.random.Generator) -> SamplingResult:
-        """Spend the budget on random points."""
         while runner.remaining:
             count = min(self.batch, runner.remaining)
             runner.run(rng.standard_normal((count, runner.dimensions)), rng.integers(0, MOST_SEEDS, count))
@@ -253,7 +252,6 @@ class CrossEntropy(Sampling):
             raise InputError(f"cross-entropy: enough = {self.enough} failures must be at least 1")
 
     def search(self, runner: SampleRunner, rng: np.random.Generator) -> SamplingResult:
-        """Find a proposal, spend the rest with it, and estimate from all runs."""
         used = [Proposal.standard(runner.dimensions)]
         counts: list[int] = []
         levels: list[float] = []
@@ -347,7 +345,7 @@ class DirectedSearch(Sampling):
             raise InputError(f"aim {self.aim!r} must be {' or '.join(AIMS)}")
 
     def search(self, runner: SampleRunner, rng: np.random.Generator) -> SamplingResult:
-        """Minimise the cost in the unit box of all factors and the seed."""
+        # minimise the cost in the unit box of all factors and the seed
         sides = runner.dimensions + 1
         start = np.full((1, 1, 1, sides), 0.5)
         low, high = np.full(sides, EDGE), np.full(sides, 1.0 - EDGE)
@@ -421,7 +419,6 @@ class Splitting(Sampling):
             raise InputError(f"splitting: quantile = {self.quantile} must be above 0 and below 1")
 
     def search(self, runner: SampleRunner, rng: np.random.Generator) -> SamplingResult:
-        """Move all replicates from level to level."""
         size = self.replicates * self.particles
         if runner.budget < 2 * size:
             raise InputError(f"splitting needs at least {2 * size} runs, not {runner.budget}")

@@ -261,11 +261,9 @@ class PoseTrack(PoseSource):
         return cls(np.array(time, dtype=np.float64), rows, start, extrapolation, max_speed, part_timeout)
 
     def at(self, time: float) -> BodyPose:
-        """Return the pose at a time [s]."""
         return BodyPose.of_row(self.motion(time).row)
 
     def motion(self, time: float) -> PoseMotion:
-        """Return pose and velocity at a time [s]."""
         k = int(np.searchsorted(self.time, time + EARLY, side="right")) - 1
         pose_motion = self._whole(time, k)
         if self.part_timeout <= 0.0 or k < 0:

@@ -67,12 +67,10 @@ class Mixture(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """Initial values in the memory of a scene for a new agent, by name: those of all models."""
         parts = (model.memory_at_start for model in self.models)
         return {name: value for part in parts for name, value in part.items()}
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s], each from the agent's own model."""
         own = self.of(scene)
         out = self.models[0].velocity(scene, dt, rng)
         for k in range(1, len(self.models)):
@@ -80,7 +78,6 @@ class Mixture(CrowdModel):
         return out
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, with each agent moved by its own model."""
         own = self.of(scene)
         after = [model.step(scene, dt, rng) for model in self.models]
 

@@ -46,7 +46,7 @@ class ExternalNavigator(Navigator):
         return False
 
     def act(self, observation: Observation) -> Twist:
-        """Return the twist of a robot without orders: it stands."""
+        # it stands
         return Twist()
 
     def is_stale(self, ticks: NDArray[np.int64], step_ns: int) -> NDArray[np.bool_]:

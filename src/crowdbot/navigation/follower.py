@@ -63,11 +63,9 @@ class FollowerNavigator(Navigator):
         check_number("FollowerNavigator", "sight", self.sight, "deg", exclusive_min=0.0, max=180.0)
 
     def begin(self, observation: Observation) -> Place:
-        """Return the heading to keep, and the distance if it is given."""
         return Place(observation.pose[2], self.distance)
 
     def act(self, observation: Observation, memory: Place) -> tuple[Action, Place]:
-        """Return the twist that keeps the distance, and the distance to keep."""
         turn = HEADING_GAIN * wrap_angle(memory.heading - observation.pose[2])
         most, top = observation.limits.max_turn_rate, observation.limits.max_speed
         turn = max(-most, min(most, turn))

@@ -86,7 +86,7 @@ class ORCANavigator(Navigator):
             raise InputError(f"ORCANavigator: share = {self.share} must be 0.5 or 1")
 
     def act(self, observation: Observation) -> Twist:
-        """Return the reachable twist that fits the chosen velocity best; for a holonomic drive, the velocity."""
+        # reachable twist that fits the chosen velocity best; for a holonomic drive, the velocity
         velocity = self.velocity(observation)
         if not observation.limits.holonomic:
             return dynamic_window_twist(observation, velocity, self.speed)

@@ -70,7 +70,6 @@ class SinusoidNavigator(Navigator):
         return 2.0 * math.pi * self.amplitude / self.period
 
     def begin(self, observation: Observation) -> LineStart:
-        """Return where and when the motion starts."""
         if self.top_speed > observation.limits.max_speed:
             raise InputError(
                 f"an amplitude of {self.amplitude} m and a period of {self.period} s need {self.top_speed:.3g} "
@@ -79,7 +78,6 @@ class SinusoidNavigator(Navigator):
         return LineStart(*observation.pose, observation.time)
 
     def act(self, observation: Observation, memory: LineStart) -> tuple[Action, LineStart]:
-        """Return the twist that reaches the next place of the motion, and the unchanged start."""
         x, y, heading = observation.pose
         along = (x - memory.x) * math.cos(memory.heading) + (y - memory.y) * math.sin(memory.heading)
         now = observation.time - memory.time

@@ -46,7 +46,6 @@ class Straight(Navigator):
         check_number("Straight", "speed", self.speed, "m/s", exclusive_min=0.0)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the twist towards the waypoint."""
         if not observation.limits.holonomic:
             return observation.towards_goal(self.speed)
         place, goal, out = (

@@ -65,7 +65,7 @@ class BoxDetector(Detector):
         """Return the people in an image ``[H, W, 3]``; a box ends at the feet and at the top of the head."""
 
     def detect(self, reading: Reading, walls: Walls | None = None) -> Detections:
-        """Return the people in an image; the walls are not used."""
+        # the walls are not used
         del walls
         self.check(reading)
         assert isinstance(reading, RgbImage)
@@ -178,7 +178,6 @@ class HogPeople(BoxDetector):
         check_number("HogPeople", "upscale", self.upscale, min=0.5, max=4.0)
 
     def find_boxes(self, rgb: NDArray[np.uint8]) -> Boxes:
-        """Return the people in an image."""
         cv2 = opencv()
         hog = cv2.HOGDescriptor()
         hog.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
@@ -240,7 +239,6 @@ class NetworkPeople(BoxDetector):
             raise InputError(f"NetworkPeople: threshold = {self.threshold} must be above 0 and below 1")
 
     def find_boxes(self, rgb: NDArray[np.uint8]) -> Boxes:
-        """Return the people in an image."""
         cv2 = opencv()
         height, width = rgb.shape[:2]
         scale = self.size / max(height, width)

@@ -213,7 +213,6 @@ class CloudClusters(Detector):
             )
 
     def detect(self, reading: Reading, walls: Walls | None = None) -> Detections:
-        """Return the people in a point cloud or depth image."""
         self.check(reading)
         pose = planar_pose(reading.pose)
         origin, heading = np.ascontiguousarray(pose.position[0]), float(pose.heading[0])
@@ -467,7 +466,6 @@ class LidarClusters(Detector):
             )
 
     def detect(self, reading: Reading, walls: Walls | None = None) -> Detections:
-        """Return the people in a scan."""
         self.check(reading)
         assert isinstance(reading, Scan)
         pose = planar_pose(reading.pose)

@@ -141,7 +141,6 @@ class ScanNetwork(Detector):
         _layers(self.weights)
 
     def detect(self, reading: Reading, walls: Walls | None = None) -> Detections:
-        """Return the people in a scan."""
         self.check(reading)
         assert isinstance(reading, Scan)
         pose = planar_pose(reading.pose)

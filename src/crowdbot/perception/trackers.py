@@ -196,7 +196,6 @@ class GlobalNearestNeighbor(Tracker):
         return math.inf
 
     def begin(self) -> TrackerState:
-        """Return the state without tracks."""
         M = len(self.densities)
         none = np.zeros(0)
         return TrackerState(
@@ -205,7 +204,6 @@ class GlobalNearestNeighbor(Tracker):
         )  # fmt: skip
 
     def update(self, detections: Detections, time: float, state: TrackerState) -> tuple[Tracks, TrackerState]:
-        """Return the tracks and the next state."""
         self.check_time(time, state.time)
         dt = 0.0 if math.isnan(state.time) else time - state.time
         filters = predict(mix(self._accelerate(state, dt), dt, self.dwell), dt, self.densities)
@@ -317,12 +315,10 @@ class InteractingMultipleModel(GlobalNearestNeighbor):
 
     @property
     def densities(self) -> Floats:
-        """Spectral density ``[2]`` of the acceleration of each motion model [m^2/s^3]."""
         return np.array([self.acceleration, self.turning])
 
     @property
     def dwell(self) -> float:
-        """Mean time until a person changes to another motion model [s]."""
         return self.stay
 
 
@@ -357,7 +353,7 @@ class JointProbabilisticDataAssociation(GlobalNearestNeighbor):
     """
 
     def associate(self, filters: FilterState, found: Innovation, existence: Floats, seen: Floats) -> Association:
-        """Return the filters after the detections, each weighted with its probability."""
+        # filters after the detections, each weighted with its probability
         inside = found.distance <= self.gate
         density = np.where(inside, np.exp(np.minimum(found.likelihood, 50.0)), 0.0)
         odds = (existence * self.detection)[:, None] * density / self.clutter / (1.0 - existence * seen)[:, None]

@@ -55,7 +55,6 @@ class ConstantVelocity(Predictor):
             raise InputError(f"constant velocity: displacements = {self.displacements} must be at least 1")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         velocity = observed_velocity(past, self.displacements)
         time = past.dt * np.arange(1, steps + 1)
@@ -85,7 +84,6 @@ class LeastSquares(Predictor):
     anchored: bool = False
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         now = past.position[:, -1, None]
         there = past.present[..., None]
@@ -110,7 +108,6 @@ class ConstantAcceleration(Predictor):
     """
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         velocity, acceleration = _last_motion(past)
         count = np.arange(1.0, steps + 1.0)[:, None, None]
@@ -148,7 +145,6 @@ class SampledConstantVelocity(Predictor):
             raise InputError(f"sampled constant velocity: displacements = {self.displacements} must be at least 1")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         W, _, A, _ = past.position.shape
         here = past.present[:, -1]

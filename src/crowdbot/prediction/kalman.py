@@ -55,7 +55,6 @@ class _Filter(Predictor):
                 raise InputError(f"{self.name.partition('(')[0]}: {name} = {value} must be finite and above 0")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         noise = None if past.covariance is None else _rows_first(past.covariance)
         motion, _, spread = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt, noise)

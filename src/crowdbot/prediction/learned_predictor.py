@@ -61,7 +61,7 @@ class LearnedPredictor(Predictor):
 
     @property
     def name(self) -> str:
-        """Name on the command line with its weights: folder, file and hash for own weights."""
+        # name on the command line with its weights: folder, file and hash for own weights
         if self.is_pretrained:
             return self.kind + (f"(checkpoint={self.checkpoint})" if self.checkpoint != AUTO else "")
         file = Path(self.checkpoint)
@@ -80,7 +80,6 @@ class LearnedPredictor(Predictor):
         return pretrained_file(self.kind, ELSEWHERE if fold == OPEN else fold)
 
     def note(self, past: Windows) -> str:
-        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = self.incompatibility(past)
         if why:
             return f"{self.kind}: {why}; a baseline is used instead"

@@ -130,7 +130,6 @@ class Simulated(Predictor):
         )  # fmt: skip
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         return self.follow(past, steps, samples, rng)[0]
 
     def follow(
@@ -142,7 +141,7 @@ class Simulated(Predictor):
         memory: Any = None,
         limit: TimeLimit | None = None,
     ) -> tuple[Forecast, Any]:
-        """Return the forecast and its fit; the search starts from the previous fit, if given, and stops in time."""
+        # forecast and its fit; the search starts from the previous fit, if given, and stops in time
         self.check(past, steps, samples)
         rngs = window_streams(rng, len(past))
         calibrator = self.calibrator

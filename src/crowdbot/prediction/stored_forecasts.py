@@ -38,7 +38,6 @@ class StoredForecasts(Predictor):
 
     @property
     def name(self) -> str:
-        """Name of the file."""
         return Path(self.file).name
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:

@@ -119,11 +119,9 @@ class DepthCamera(Sensor):
 
     @property
     def sees_skins(self) -> bool:
-        """Whether the camera sees people by their triangle skins."""
         return self.skins
 
     def with_skins(self) -> Self:
-        """Return a copy that sees people by their triangle skins."""
         return dataclasses.replace(self, skins=True)
 
     @property

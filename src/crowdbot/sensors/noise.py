@@ -78,7 +78,6 @@ class Gaussian(Noise):
         check_number("gaussian noise", "sd", self.sd, min=0.0)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return independent normal draws."""
         return rng.normal(0.0, abs(self.sd), shape)  # NumPy rejects -0.0
 
 
@@ -96,7 +95,7 @@ class Offset(Noise):
         check_number("offset noise", "value", self.value)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return the constant; draws nothing."""
+        # draws nothing
         return np.full(shape, self.value)
 
 
@@ -118,7 +117,7 @@ class Peak(Noise):
         check_number("peak noise", "sd", self.sd, min=0.0)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return ``height`` where a uniform draw falls below the probability; with ``sd`` normal around it."""
+        # height where a uniform draw falls below the probability; with sd normal around it
         chosen = rng.random(shape) < self.probability
         return np.where(chosen, self.height if self.sd == 0.0 else rng.normal(self.height, self.sd, shape), 0.0)
 
@@ -139,7 +138,6 @@ class Dropout(Noise):
         _check_probability("dropout", self.probability)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return infinity where a uniform draw falls below the probability."""
         return np.where(rng.random(shape) < self.probability, np.inf, 0.0)
 
 
@@ -168,11 +166,11 @@ class Quantised(Noise):
         return cls((high - low) / (2**bits - 1))
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return zeros: rounding depends on the reading."""
+        # rounding depends on the reading
         return np.zeros(shape)
 
     def apply(self, values: Floats, rng: np.random.Generator) -> Floats:
-        """Return the rounded readings; infinite values are unchanged."""
+        # rounded readings; infinite values are unchanged
         return np.round(values / self.step) * self.step
 
 

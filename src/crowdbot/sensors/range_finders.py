@@ -108,7 +108,6 @@ class Infrared(RangeFinder):
         self.check_ranges()
 
     def bundle(self) -> tuple[Beams, Floats, Floats]:
-        """Return the beams of the cone, all of the largest range."""
         return (*_cone(self.dispersion, self.rays), np.full(self.rays, self.range_max))
 
 
@@ -179,7 +178,6 @@ class Ultrasound(RangeFinder):
         return math.atan(0.5 * SLIM * self.radius / self.range_max)
 
     def bundle(self) -> tuple[Beams, Floats, Floats]:
-        """Return the beams of the zone, each up to its surface."""
         return _teardrop(self.radius, self.range_max, self.rays)
 
 

@@ -36,11 +36,9 @@ class Ranging(Sensor):
 
     @property
     def sees_skins(self) -> bool:
-        """Whether the sensor sees people by their triangle skins."""
         return self.skins
 
     def with_skins(self) -> Self:
-        """Return a copy that sees people by their triangle skins."""
         anything: Any = self
         copy: Self = dataclasses.replace(anything, skins=True)
         return copy

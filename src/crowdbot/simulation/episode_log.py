@@ -63,7 +63,6 @@ class EpisodeLog(EpisodeStatistics):
         self._frames: list[_Frame] = []
 
     def keep(self, frame: StepRecord) -> None:
-        """Add a step that the digest already contains."""
         self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
@@ -92,7 +91,6 @@ class EpisodeLog(EpisodeStatistics):
             self._keep_frame(nanoseconds, whole, self.robot_ids, batch.goals[row], codes)
 
     def metrics(self, outcome: str) -> dict[str, float]:
-        """Return the metrics of all robots."""
         return self._metrics(self._arrays(), outcome) if self.trial.robots and self._frames else {}
 
     def _metrics(self, arrays: Mapping[str, NDArray[Any]], outcome: str) -> dict[str, float]:

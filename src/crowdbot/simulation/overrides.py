@@ -39,7 +39,6 @@ class DoorOrder(Order):
     open: bool = True
 
     def check(self, simulation: Any) -> None:
-        """Raise :class:`InputError` if there is no such door, or it does not open by order."""
         super().check(simulation)
         doors = {door.name: door for door in simulation.trial.stage.doors}
         if self.door not in doors:
@@ -49,7 +48,6 @@ class DoorOrder(Order):
             raise InputError(f'DoorOrder: door {self.door!r} opens by {opening}; take opening="order"')
 
     def apply(self, simulation: Any) -> None:
-        """Let the door begin to open or close."""
         doors = worlds_of(simulation.world)[self.environment].doors
         doors.wanted = {**doors.wanted, self.door: bool(self.open)}
 

@@ -69,7 +69,6 @@ class _Observations(ObservationBatch):
     latest: Callable[[int], Mapping[str, Reading]]
 
     def environment(self, k: int) -> Observation:
-        """Return the observation in one environment, with the latest readings."""
         return dataclasses.replace(super().environment(k), readings=self.latest(k))
 
 

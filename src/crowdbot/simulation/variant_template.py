@@ -62,7 +62,6 @@ class VariantTemplate(WorldTemplate):
         self._each = [known[id(trial)] for trial in self.trials]
 
     def of_environments(self, environments: Sequence[int] | NDArray[np.int64]) -> VariantTemplate:
-        """Return the template of some environments."""
         some = copy.copy(self)
         some._each = [self._each[int(e)] for e in environments]
         some.trials = tuple(template.trial for template in some._each)
@@ -70,18 +69,15 @@ class VariantTemplate(WorldTemplate):
         return some
 
     def with_environments(self, environments: Sequence[int] | NDArray[np.int64], other: WorldTemplate) -> WorldTemplate:
-        """Return the template in which some environments have the variants of another one."""
         trials = list(self.trials)
         for k, e in enumerate(environments):
             trials[int(e)] = other.trial_of(k)
         return VariantTemplate(trials, self.posed)
 
     def trial_of(self, environment: int) -> Trial:
-        """Return the variant of an environment."""
         return self.trials[environment]
 
     def set_goals(self, robots: Sequence[RobotControl]) -> None:
-        """Set the goals of robots at the start in each environment."""
         for k, control in enumerate(robots):
             for e, trial in enumerate(self.trials):
                 goal = trial.robots[k].goal

@@ -71,11 +71,9 @@ class RandomizedModel(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """Initial values of the memory of a new person, as defined by the model."""
         return self.model.memory_at_start
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities of the model with the parameters of seed 0."""
         return self.resolve(0, 0, scene.shape[1]).velocity(scene, dt, rng)
 
     def resolve(self, seed: int, crowd: int, agents: int) -> CrowdModel:

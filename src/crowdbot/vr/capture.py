@@ -42,22 +42,18 @@ class StreamTap(PoseStream):
         self._tell = tell
 
     def subjects(self) -> tuple[str, ...]:
-        """Return the names of the subjects that are known by now."""
         return self.stream.subjects()
 
     def read(self, subject: str, now: float, ahead: float) -> list[tuple[float, MotionSample]]:
-        """Return the samples of the stream, see :meth:`crowdbot.bridges.PoseStream.read`."""
         result = self.stream.read(subject, now, ahead)
         for time, sample in result:
             self._tell({"capture": subject, "step": round(time, 6), **sample_record(sample)})
         return result
 
     def statistics(self, subject: str = "") -> StreamStatistics:
-        """Return what has been received of a subject."""
         return self.stream.statistics(subject)
 
     def latency(self) -> tuple[float, float] | None:
-        """Return the age of samples when they are used [s]."""
         return self.stream.latency()
 
 

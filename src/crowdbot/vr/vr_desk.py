@@ -105,7 +105,6 @@ class VrDesk(Desk):
         self._watcher: threading.Thread | None = None
 
     def greet(self) -> dict[str, Any]:
-        """Return the state."""
         if self.captures.texts:
             self._start_watcher()
         return self.state()
@@ -256,13 +255,12 @@ class VrDesk(Desk):
         self._tell_state()
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
-        """Return the address of the page of participants as a picture that a headset can read (QR code)."""
+        # address of the page of participants as a picture that a headset can read (QR code)
         if path != "link.svg":
             raise KeyError(path)
         return Resource(link_picture(self.address), "image/svg+xml")
 
     def close(self) -> None:
-        """Stop the checks and close the recordings."""
         self._closed.set()
         for participant in list(self.participants.values()):
             self._discard_recording(participant)
@@ -473,7 +471,6 @@ class VrDesk(Desk):
         self._tell_state()
 
     def join_trial(self, trial: Trial, folder: Path) -> tuple[Trial, Sequence[OrderSource]]:
-        """Give the avatars of a trial of the experiment to the participants, and record them in its folder."""
         self.follow_experiment()
         with self._lock:
             if not any(avatar.source == "external" for avatar in trial.avatars):
@@ -490,7 +487,6 @@ class VrDesk(Desk):
             return trial, [self._seats]
 
     def leave_trial(self) -> None:
-        """Close the recordings of the trial that has ended."""
         with self._lock:
             seats, self._seats = self._seats, None
             if seats is not None:

@@ -96,7 +96,6 @@ class HeadsetWindow(Window):
     """
 
     def tell(self, event: str, data: Any) -> None:
-        """Send an event, if it is one for participants."""
         if event == "hello":
             desks = {name: _part(name, state) for name, state in data["desks"].items() if name in STATES}
             super().tell(event, {"session": data["session"], "desks": desks})
@@ -105,7 +104,6 @@ class HeadsetWindow(Window):
             super().tell(event, _part(desk, data) if what == "state" else data if what == "status" else {})
 
     def show(self, frame: StateFrame) -> None:
-        """Send a frame of the picture."""
         if frame.channel in CHANNELS:
             super().show(headset_frame(frame))
 
@@ -218,7 +216,6 @@ class VrServer(AppServer):
         return f"{base}vr{token}" + ("" if session == "main" else f"#session={session}")
 
     def application(self) -> web.Application:
-        """Return the aiohttp application."""
         app = super().application()
         app.router.add_get("/api/{session}/headset", self._headset)
         app.router.add_get("/api/{session}/headset-window", self._headset_window)

@@ -207,7 +207,6 @@ class PlanarWorld(World):
             show_doors(self)
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Advance by one time step; see :meth:`World.step`."""
         asked = self._checked(commands)
         if self.doors is not None:
             move_doors(self, self.environment_time.age)
@@ -275,25 +274,20 @@ class PlanarWorld(World):
 
     @property
     def has_own_walls(self) -> bool:
-        """Whether its walls change on their own, by doors; see :class:`World`."""
         return self.walls_fixed or self.doors is not None
 
     @property
     def waiting_count(self) -> NDArray[np.int64]:
-        """Number of people waiting to enter, ``[E]``."""
         return self._traffic.waiting_count
 
     def pose(self, robot: int) -> Pose:
-        """Return the pose of a robot in every environment."""
         return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
-        """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
         (x, y, z, roll, pitch, yaw), base = mount.placed, self.pose(robot)
         return base.to_spatial(0.0).offset(x, y, z, roll, pitch, yaw) if spatial else base.offset(x, y, yaw)
 
     def wall_clearance(self, robot: int) -> Floats:
-        """Return the clearance ``[E]`` [m] to walls on the straight path of the last step; see :class:`World`."""
         if robot in self.ghosts:
             return np.full(len(self.slots), math.inf)
         walls = self.scene.walls
@@ -316,22 +310,18 @@ class PlanarWorld(World):
         return self._outline_table
 
     def plane_scene(self, environment: int | None = None) -> Scene:
-        """Return the scene; see :class:`World`. The outlines of props are always among its walls."""
         return hide_ghosts(self.scene if environment is None else self.environment_scene(environment), self.ghosts)
 
     def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
-        """Return the scene with bodies; see :class:`World`."""
         scene = hide_ghosts(self.environment_scene(environment), self.ghosts)
         only = self.avatars.people if avatars and self.avatars is not None else None
         return self._embodied(environment).scene(scene, skins, only)
 
     @property
     def renderer(self) -> Renderer:
-        """Renderer of the current scene with ghosts, for films; see :class:`World`."""
         return self._embodied(0).renderer(self.environment_scene(0))
 
     def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer of one environment; see :class:`World`."""
         return self._embodied(environment).renderer(hide_ghosts(self.environment_scene(environment), self.ghosts))
 
     def embody(
@@ -345,7 +335,6 @@ class PlanarWorld(World):
         walls: Walls | None = None,
         seed: int = 0,
     ) -> None:
-        """Add bodies for sensors and cameras; see :class:`World`."""
         from .physics.kinematic_bodies import KinematicBodies
 
         if (count := len(self.slots)) > 1:
@@ -355,12 +344,10 @@ class PlanarWorld(World):
         self._begin_activity(activity)
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
-        """Replace robots and stage; see :class:`World`."""
         for bodies in self._bodies or ():
             bodies.robots, bodies.stage, bodies.walls = {**bodies.robots, **robots}, stage, walls
 
     def pose_people(self) -> None:
-        """Move the bodies of people to the current scene; see :class:`World`."""
         for e, bodies in enumerate(self._bodies or ()):
             bodies.people.walk(self.environment_scene(e), self.dt)
 
@@ -374,7 +361,6 @@ class PlanarWorld(World):
         return self._bodies[environment]
 
     def environment_scene(self, environment: int) -> Scene:
-        """Return the scene of one environment with its own number of agents."""
         slots = int(self.slots[environment])
         one = self.scene if len(self.slots) == 1 else self.scene.environment(environment)
         return one if slots == one.shape[1] else resize_scene(one, slots)
@@ -461,13 +447,11 @@ class PlanarWorld(World):
         return drift_people(self._stop_at_walls(earlier, crowd), self.ids, self.dt)
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        """Remove a robot; see :meth:`World.remove_robot`."""
         remove_robot_at(self, agent, robot_environments(self, agent, environments))
 
     def place_robot(
         self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        """Make an agent a robot; see :class:`World`."""
         put_robot_at(self, agent, robot, place, ghost, environments)
         for bodies in self._bodies or ():
             bodies.robots = {**bodies.robots, agent: robot}
@@ -480,7 +464,6 @@ class PlanarWorld(World):
             bodies.forget_renderer()
 
     def add_prop(self, prop: PropBody, name: str = "") -> str:
-        """Add a prop, as an outline that does not move; see :meth:`World.add_prop`."""
         from .physics.scenery import add_rings, prop_outline
 
         names, outlines = props_of(self)
@@ -494,7 +477,6 @@ class PlanarWorld(World):
         return name
 
     def remove_prop(self, name: str) -> None:
-        """Remove a prop; see :meth:`World.remove_prop`."""
         from .physics.scenery import remove_ring
         from .physics.stage import without_prop
 

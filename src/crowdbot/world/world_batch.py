@@ -114,16 +114,13 @@ class WorldBatch(World):
 
     @property
     def waiting_count(self) -> Ints:
-        """Number of people waiting to enter, ``[E]``."""
         return np.concatenate([world.waiting_count for world in self.worlds])
 
     @property
     def has_own_walls(self) -> bool:
-        """Whether each environment has walls of its own; see :class:`World`."""
         return True
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Advance by one time step; see :class:`World`."""
         errors = self.try_step(commands)
         for error in errors.values():
             raise error
@@ -175,17 +172,14 @@ class WorldBatch(World):
     def place_robot(
         self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        """Make an agent a robot; see :class:`World`."""
         for e in sorted(range(len(self.worlds)), key=lambda e: e not in environments):  # an error changes nothing
             self.worlds[e].place_robot(agent, robot, place, ghost, [0] if e in environments else [])
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        """Remove a robot and its body; see :class:`World`."""
         for e in robot_environments(self, agent, environments):
             self.worlds[e].remove_robot(agent)
 
     def add_prop(self, prop: PropBody, name: str = "") -> str:
-        """Add a prop in all environments; see :class:`World`."""
         name = name or new_prop_name(max(map(live_prop_names, self.worlds), key=len), "")
         for world in self.worlds:
             new_prop_name(live_prop_names(world), name)
@@ -194,71 +188,58 @@ class WorldBatch(World):
         return name
 
     def remove_prop(self, name: str) -> None:
-        """Remove a prop in all environments that have it; see :class:`World`."""
         holders = [world for world in self.worlds if name in live_prop_names(world)]
         for world in holders or self.worlds:
             world.remove_prop(name)
 
     def pose(self, robot: int) -> Pose:
-        """Return the pose of a robot in every environment."""
         poses: list[Pose] = [world.pose(robot) for world in self.worlds]
         return tree.join(poses)
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
-        """Return the pose of a sensor in every environment; see :class:`World`."""
         poses: list[Pose | SpatialPose] = [world.sensor_pose(robot, mount, spatial) for world in self.worlds]
         return tree.join(poses)
 
     def wall_clearance(self, robot: int) -> NDArray[np.float64]:
-        """Return the clearance to fixed objects ``[E]`` [m]; see :class:`World`."""
         return np.concatenate([world.wall_clearance(robot) for world in self.worlds])
 
     def plane_scene(self, environment: int | None = None) -> Scene:
-        """Return the scene of one environment in the plane; see :class:`World`."""
         if environment is None:
             raise InputError("the outlines of props differ between environments: ask for one of them")
         return self.worlds[environment].plane_scene()
 
     def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
-        """Return the scene of one environment with bodies; see :class:`World`."""
         return self.worlds[environment].body_scene(skins, avatars=avatars)
 
     def environment_scene(self, environment: int) -> Scene:
-        """Return the scene of one environment."""
         return self.worlds[environment].scene
 
     def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer of one environment."""
         return self.worlds[environment].environment_renderer(0)
 
     @property
     def renderer(self) -> Renderer:
-        """Renderer of the first environment."""
         return self.worlds[0].renderer
 
     def part(self, environment: int) -> tuple[PlanarWorld, int]:
-        """Return the world of an environment; see :class:`World`."""
         return self.worlds[environment], 0
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
-        """Replace robots and stage in all environments; see :class:`World`."""
         for world in self.worlds:
             world.change_bodies(robots, stage, walls)
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: Any = None, **how: Any) -> None:
-        """Change parameters of all environments; see :meth:`PlanarWorld.reconfigure`."""
         for e, world in enumerate(self.worlds):
             one = resize_scene(scene.environments([e]), world.scene.shape[1]).replace(walls=world.scene.walls)
             own = None if seed is None else (seed + e if isinstance(seed, int) else seed[e])
             world.reconfigure(one, sources, own, **how)
 
     def embody(self, robots: Mapping[int, Robot], stage: PhysicsStage, people: People, **options: Any) -> None:
-        """Refuse bodies in the plane, as they are added to one environment at a time; other worlds have bodies."""
+        # refuse bodies in the plane, as they are added to one environment at a time; other worlds have bodies
         if not self.walls_fixed:
             raise InputError(f"bodies are added to one environment at a time; this world has {len(self.worlds)}")
 
     def pose_people(self) -> None:
-        """Move the bodies of people to the current scene; see :class:`World`."""
         for world in self.worlds:
             world.pose_people()
 

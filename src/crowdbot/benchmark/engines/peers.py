@@ -106,19 +106,16 @@ class Rvo2Peer(EnginePeer):
 
     @property
     def model(self) -> ORCA:
-        """ORCA with the settings of RVO2."""
         return ORCA(neighbor_distance=REACH, max_neighbors=float(MOST), time_horizon=HORIZON)
 
     def threads(self) -> tuple[int, ...]:
-        """Return 1, and 2 with the compiled library where the machine has two cores."""
+        # 1, and 2 with the compiled library where the machine has two cores
         return (1, 2) if self.library is not None and (os.cpu_count() or 1) > 1 else (1,)
 
     def describe(self) -> str:
-        """Return which build of the engine runs."""
         return f"RVO2 from source, g++ {' '.join(FLAGS)}" if self.library is not None else "RVO2 of the package pyrvo"
 
     def step(self, scene: Scene, threads: int = 1) -> Callable[[], object]:
-        """Return a function that makes one step of RVO2 from the people of environment 0."""
         wish = scene.desired_velocity(self.dt)
         columns = (scene.position, scene.velocity, wish, scene.radius, scene.max_speed)
         values = [np.ascontiguousarray(column[0]) for column in columns]
@@ -210,16 +207,14 @@ class JuPedSimPeer(EnginePeer):
         import_optional("jupedsim", "the comparison with JuPedSim", "peers")
 
     def threads(self) -> tuple[int, ...]:
-        """Return 1 and 2: JuPedSim has one thread, ours can have more."""
+        # 1 and 2: JuPedSim has one thread, ours can have more
         return (1, 2) if (os.cpu_count() or 1) > 1 else (1,)
 
     @property
     def model(self) -> CollisionFreeSpeed:
-        """Our collision-free speed model."""
         return CollisionFreeSpeed()
 
     def step(self, scene: Scene, threads: int = 1) -> Callable[[], object]:
-        """Return a function that makes one step of JuPedSim."""
         return jupedsim_step("CollisionFreeSpeedModelV2", scene)
 
 
@@ -238,11 +233,9 @@ class NavgroundOrcaPeer(EnginePeer):
 
     @property
     def model(self) -> ORCA:
-        """ORCA with the settings of navground."""
         return ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0)
 
     def step(self, scene: Scene, threads: int = 1) -> Callable[[], object]:
-        """Return a function that makes one step of a world of navground."""
         core, sim, world = self._core, self._sim, self._sim.World()
         columns = (scene.position[0], scene.goal[0], scene.radius[0], scene.preferred_speed[0], scene.max_speed[0])
         for place, goal, radius, speed, top in zip(*(column.tolist() for column in columns), strict=True):
@@ -287,11 +280,9 @@ class PySocialForcePeer(EnginePeer):
 
     @property
     def model(self) -> GroupForce:
-        """Our group force model in the variant of PySocialForce."""
         return GroupForce(variant="pysocialforce")
 
     def step(self, scene: Scene, threads: int = 1) -> Callable[[], object]:
-        """Return a function that makes one step of PySocialForce."""
         state = np.concatenate([scene.position[0], scene.velocity[0], scene.goal[0]], axis=1)
         simulator = self._module.Simulator(state)
         return lambda: simulator.step(1)

@@ -63,7 +63,7 @@ class StopInput(InputTopic):
     take: Callable[[bool], None] = lambda stop: None
 
     def orders(self, fields: Mapping[str, Any], sender: str = "") -> list[Order]:
-        """Give the value to ``take``; it gives no order. What is not plainly false stops."""
+        # give the value to take; it gives no order. What is not plainly false stops
         self.take(not (isinstance(fields, Mapping) and fields.get("data") is False))
         return []
 
@@ -155,7 +155,6 @@ class JoinPort(BridgePort):
         super().__init__(trial, transports)
 
     def describe(self, trial: Trial) -> RobotInterface:
-        """Return the topics of a bridge, with those of the real robot."""
         whole, name = RobotInterface.of(trial), self.robot.name
         stop = StopInput(f"/{name}/stop", ("std_msgs/msg/Bool",), name, COMMAND, "emergency stop", self._take_stop)
         inputs = [*whole.inputs, stop]
@@ -208,13 +207,12 @@ class JoinPort(BridgePort):
         return ""
 
     def begin(self, simulation: Simulation) -> None:
-        """Send the first instant, then ask motion capture again: the poses of before are as old as this has taken."""
+        # send the first instant, then ask motion capture again: the poses of before are as old as this has taken
         super().begin(simulation)
         for capture in self.captures:
             capture.orders(simulation)
 
     def serve(self, simulation: Simulation) -> None:
-        """Let commands leave, in every round of the loop."""
         super().serve(simulation)
         wanted: list[VelocityOrder] = []
         for order in self.inbox.take_orders():
@@ -248,7 +246,6 @@ class JoinPort(BridgePort):
             self.note(text)
 
     def take_orders(self, simulation: Simulation) -> list[Order]:
-        """Return the orders for the current instant, with the pose of the robot."""
         orders = super().take_orders(simulation)
         with self._lock:
             latest, self._latest = self._latest, None
@@ -261,7 +258,6 @@ class JoinPort(BridgePort):
         return [*orders, RobotPoseOrder(robot=self.robot.name, time=when, x=x, y=y, heading=heading, source="join")]
 
     def stop(self) -> None:
-        """Let the robot stand, and close all transports."""
         with self._lock:
             self.guard.stop("the run has ended")
         self.send_command(0)

@@ -57,11 +57,10 @@ class MotionRecording(PoseStream):
         self.recorded, self.begin = dict(recorded), begin
 
     def subjects(self) -> tuple[str, ...]:
-        """Return the names of the subjects."""
         return tuple(self.recorded)
 
     def read(self, subject: str, now: float, ahead: float) -> list[tuple[float, MotionSample]]:
-        """Return the samples before and after ``ahead``; none before the first and after the last sample."""
+        # samples before and after ahead; none before the first and after the last sample
         found = self._find(subject)
         if found is None:
             return []
@@ -73,7 +72,6 @@ class MotionRecording(PoseStream):
         return [(float(found.time[i]) - self.begin, found.sample(i)) for i in range(k, min(k + 1, last) + 1)]
 
     def statistics(self, subject: str = "") -> StreamStatistics:
-        """Return number and rate of the samples."""
         found = self._find(subject)
         if found is None:
             return StreamStatistics()

@@ -236,7 +236,6 @@ class NatNetStream(ServerStream):
     default_port = PORT
 
     def prepare(self) -> None:
-        """Set what is known before a server has answered."""
         self.info: ServerInfo | None = None
         self.axes = FROM_Y_UP
         self._names: dict[int, str] = {}
@@ -245,7 +244,7 @@ class NatNetStream(ServerStream):
         self._sent = -1e9
 
     def open_socket(self) -> socket.socket:
-        """Return the socket for answers and unicast frames."""
+        # socket for answers and unicast frames
         try:
             local = "127.0.0.1" if ipaddress.ip_address(self.server).is_loopback else ""
         except ValueError:
@@ -253,11 +252,10 @@ class NatNetStream(ServerStream):
         return bind_socket(local, 0)
 
     def name_sender(self, address: tuple[str, int]) -> str:
-        """Return the address of the sender: a server sends from more than one port."""
+        # address of the sender: a server sends from more than one port
         return address[0]
 
     def begin(self, connection: socket.socket) -> socket.socket:
-        """Connect, wait until the server has described its bodies, and return the socket for frames."""
         self._wait(connection)
         self._command = connection
         if self.info is None or self.info.multicast is None:
@@ -267,7 +265,6 @@ class NatNetStream(ServerStream):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the thread and close the sockets."""
         super().__exit__(kind, error, trace)
         if self._command is not None:
             self._command.close()
@@ -325,7 +322,7 @@ class NatNetStream(ServerStream):
         connection.sendto(struct.pack("<HH", kind, len(payload)) + payload, (self.server, self.port))
 
     def keep_alive(self, connection: socket.socket) -> None:
-        """Tell a unicast server that this client is there."""
+        # tell a unicast server that this client is there
         now = self.monotonic()
         if now - self._sent > AGAIN:
             self._sent = now
@@ -335,7 +332,6 @@ class NatNetStream(ServerStream):
                 self._refuse(str(error))
 
     def decode(self, data: bytes) -> Iterable[tuple[str, MotionSample]]:
-        """Return the bodies in a frame; descriptions and answers are taken too."""
         kind = _kind(data)
         if kind == DESCRIPTIONS:
             self._describe(data)

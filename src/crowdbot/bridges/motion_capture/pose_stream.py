@@ -275,7 +275,6 @@ class PoseReceiver(PoseStream):
         """Do what the protocol needs from time to time; called at least every 50 ms while nothing arrives."""
 
     def __enter__(self) -> PoseReceiver:
-        """Open the socket and start the thread."""
         connection = self.open_socket()
         try:
             connection = self.begin(connection)
@@ -291,7 +290,6 @@ class PoseReceiver(PoseStream):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the thread and close the socket."""
         self._end.set()
         if self._thread is not None:
             self._thread.join()
@@ -336,12 +334,10 @@ class PoseReceiver(PoseStream):
         self.reason = reason[:200]
 
     def subjects(self) -> tuple[str, ...]:
-        """Return the names of the subjects of which a sample has arrived."""
         with self._lock:
             return tuple(self._subjects)
 
     def read(self, subject: str, now: float, ahead: float) -> list[tuple[float, MotionSample]]:
-        """Return the newest sample of a subject with its simulated time [s], if it is new."""
         clock = self.monotonic()
         if self._start is None:
             self._start = now
@@ -361,7 +357,6 @@ class PoseReceiver(PoseStream):
         return self._subjects.get(subject) if subject else next(iter(self._subjects.values()), None)
 
     def statistics(self, subject: str = "") -> StreamStatistics:
-        """Return what has been received of a subject; empty: of the first one."""
         with self._lock:
             found = self._find(subject) or _Subject()
             return StreamStatistics(found.samples, found.lost, self.refused, self.reason, found.rate)

@@ -50,7 +50,6 @@ class VrpnStream(ServerStream):
     default_port = PORT
 
     def prepare(self) -> None:
-        """Set what is known before a server has answered."""
         self._buffer = bytearray()
         self._broken = False
         self._senders: dict[int, str] = {}
@@ -58,7 +57,6 @@ class VrpnStream(ServerStream):
         self._numbers: dict[str, int] = {}
 
     def open_socket(self) -> socket.socket:
-        """Return a connection to the server, after both sides have said their version."""
         try:
             connection = socket.create_connection((self.server, self.port), timeout=self.timeout)
         except OSError as error:

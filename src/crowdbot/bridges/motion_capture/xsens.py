@@ -115,13 +115,12 @@ class XsensStream(PoseReceiver):
         self._characters: dict[int, _Character] = {}
 
     def open_socket(self) -> socket.socket:
-        """Return the bound socket."""
         connection = bind_socket(self.host, self.port)
         self.port = int(connection.getsockname()[1])
         return connection
 
     def decode(self, data: bytes) -> Iterable[tuple[str, MotionSample]]:
-        """Return the sample in a datagram; none if it is not the last part of one, or has other data."""
+        # sample in a datagram; none if it is not the last part of one, or has other data
         header = _read_header(data)
         character = self._characters.get(header.character)
         if character is None:

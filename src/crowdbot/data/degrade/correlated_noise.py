@@ -38,7 +38,6 @@ class CorrelatedNoise(Degradation):
     )  # fmt: skip
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the noisy recording, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         error, time = rng.standard_normal((len(tracks), 2)), tracks.time
         for rows, before in iterate_ranks(tracks.id, tracks.frame):

@@ -37,7 +37,6 @@ class FalseTracks(Degradation):
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.2, 0.5, 1.0, 2.0)
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the recording with false tracks, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         frames, first = np.unique(tracks.frame, return_index=True)
         times = tracks.time[first]

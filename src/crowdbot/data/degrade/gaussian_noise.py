@@ -34,5 +34,4 @@ class GaussianNoise(Degradation):
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.02, 0.05, 0.1, 0.2)
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the noisy recording, see :meth:`Degradation.apply`."""
         return seen.displace(self.sd * rng.standard_normal((len(seen.tracks), 2)))

@@ -41,7 +41,6 @@ class HeavyTails(Degradation):
     )  # fmt: skip
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the recording with outliers, see :meth:`Degradation.apply`."""
         rows = len(seen.tracks)
         outlier = rng.random(rows) < self.probability
         normal = rng.standard_normal((rows, 2))

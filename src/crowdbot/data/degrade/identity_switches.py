@@ -80,7 +80,6 @@ class IdentitySwitches(Degradation):
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.1, 0.25, 0.5, 1.0)
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the recording with swapped ids, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         met = encounters(tracks, self.distance)
         swapped = rng.random(len(met)) < self.probability

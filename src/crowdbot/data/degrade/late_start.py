@@ -36,5 +36,4 @@ class LateStart(Degradation):
         object.__setattr__(self, "rows", int(self.rows))
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the recording without the first rows of its tracks, see :meth:`Degradation.apply`."""
         return seen.keep_rows(row_rank(seen.tracks.id, seen.tracks.frame) >= self.rows)

@@ -51,7 +51,6 @@ class MissingFrames(Degradation):
             )
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the recording with gaps, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         if self.of == "frame":
             frames, place = np.unique(tracks.frame, return_inverse=True)

@@ -87,7 +87,6 @@ class Occlusion(Degradation):
             raise InputError(f"{self.name}: eye = {self.eye} must be a point x, y [m], or the id of a robot or person")
 
     def check(self, tracks: Trajectories) -> None:
-        """Raise :class:`DataError` if the recording is in pixels or the viewpoint is unknown."""
         super().check(tracks)
         if isinstance(self.eye, tuple):
             return
@@ -109,7 +108,6 @@ class Occlusion(Degradation):
             )
 
     def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
-        """Return the visible rows, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         keeps = rng.random(len(tracks)) >= self.probability
         looks = np.zeros(len(tracks), dtype=np.bool_)

@@ -115,7 +115,7 @@ class CostModel(CrowdModel):
             )
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is used by costs and samples."""
+        # rng is used by costs and samples
         wish, walking, seen, out = begin_step(scene, dt)
 
         def value(name: str) -> Floats:

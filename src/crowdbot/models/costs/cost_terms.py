@@ -38,12 +38,11 @@ class PreferredVelocity(VelocityCost):
     exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="van den Berg et al. 2008", min=0.1)
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``|v' - p|^exponent``."""
+        # |v' - p|^exponent
         distance = length(candidates - world.wish[:, None])
         return np.asarray(distance ** world.each(self.exponent, "exponent")[:, None])
 
     def best(self, world: NeighborView) -> Floats:
-        """Return the desired velocities."""
         return world.wish
 
 
@@ -60,12 +59,11 @@ class Inertia(VelocityCost):
     exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="chosen here", min=0.1)
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``|v' - v|^exponent``."""
+        # |v' - v|^exponent
         distance = length(candidates - world.velocity[:, None])
         return np.asarray(distance ** world.each(self.exponent, "exponent")[:, None])
 
     def best(self, world: NeighborView) -> Floats:
-        """Return the current velocities."""
         return world.velocity
 
 
@@ -80,7 +78,6 @@ class NoiseTerm(VelocityCost):
     deviation: float = parameter(0.1, unit="1", low=0.0, high=1.0, source="chosen here")
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return normally distributed numbers."""
         if world.random is None:
             return np.zeros(candidates.shape[:2])
         return self.deviation * world.random.standard_normal(candidates.shape[:2])
@@ -97,7 +94,6 @@ class GoalForce(Force):
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing and Molnar 1995")
 
     def force(self, world: NeighborView) -> Floats:
-        """Return the accelerations ``[N, 2]`` [m/s^2]."""
         relaxation = np.maximum(world.each(self.relaxation_time, "relaxation_time"), world.dt)
         return np.asarray((world.wish - world.velocity) / relaxation[:, None])
 
@@ -113,7 +109,6 @@ class ModelForce(Force):
     model: CrowdModel
 
     def force(self, world: NeighborView) -> Floats:
-        """Return the accelerations ``[N, 2]`` [m/s^2]."""
         chosen = world.compute_once(
             ("model", id(self.model)), lambda: self.model.velocity(world.scene, world.dt, world.random)
         )
@@ -139,7 +134,6 @@ class PowerLawForce(Force):
     time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
 
     def force(self, world: NeighborView) -> Floats:
-        """Return the accelerations ``[N, 2]`` [m/s^2]."""
         time = world.contact_times(world.velocity[:, None])[:, 0]
         soon = np.isfinite(time)
         motion = world.velocity[:, None] - world.motion
@@ -189,7 +183,7 @@ class PowerLawEnergy(VelocityCost):
     time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return the sum of the energies with all neighbours and the first wall."""
+        # sum of the energies with all neighbours and the first wall
         walls = world.wall_times(candidates)[..., None]
         time = np.concatenate([world.contact_times(candidates), walls], axis=-1)
         k, m, horizon = (world.each(getattr(self, name), name)[:, None, None] for name in _ENERGY)
@@ -212,7 +206,6 @@ class ReciprocalObstacles(VelocityCost):
     weight: PerAgent = parameter(1.0, unit="m", low=0.1, high=10.0, source="UMANS")
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return the cost, inf above the maximum speed."""
         time = world.first_contact(2.0 * candidates - world.velocity[:, None])
         cost = world.each(self.weight, "weight")[:, None] / time + length(candidates - world.wish[:, None])
         return np.where(length(candidates) <= world.max_speed[:, None] * (1.0 + 1e-9), cost, np.inf)
@@ -239,7 +232,6 @@ class HalfPlanes(VelocityCost):
     )
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return the cost of each velocity."""
         lines, _, count = self._lines(world)
         dx = lines[:, None, :, 0] - candidates[:, :, None, 0]
         dy = lines[:, None, :, 1] - candidates[:, :, None, 1]
@@ -250,7 +242,6 @@ class HalfPlanes(VelocityCost):
         return np.where(deepest <= EDGE, far, deepest + 2.0 * world.max_speed[:, None])
 
     def best(self, world: NeighborView) -> Floats:
-        """Return the solutions of the linear programs."""
         lines, fixed, count = self._lines(world)
         spare, top, wish = np.empty(lines.shape[1:]), world.max_speed, world.wish
         out = np.empty((len(world), 2))
@@ -304,7 +295,7 @@ class Effort(VelocityCost):
     safe_time: PerAgent = parameter(0.5, unit="s", low=0.0, high=2.0, source="UMANS")
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``t (e_s + e_w |v'|^2) + 2 |g - t v'| sqrt(e_s e_w)``."""
+        # t (e_s + e_w |v'|^2) + 2 |g - t v'| sqrt(e_s e_w)
         rest, walk, t, safe = (
             world.each(getattr(self, name), name)[:, None]
             for name in ("rest_power", "walk_power", "planning_time", "safe_time")
@@ -330,7 +321,7 @@ class FreeWay(VelocityCost):
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011", min=1e-3)
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``(1 + D^2) (1 + (1 - |v'| / S)^2)``, D to the end of the free path f, S = min(|p|, f / tau)."""
+        # (1 + D^2) (1 + (1 - |v'| / S)^2), D to the end of the free path f, S = min(|p|, f / tau)
         sight = world.each(self.sight_distance, "sight_distance")[:, None]
         speed, wanted = length(candidates), length(world.wish)[:, None]
         ahead = candidates / np.maximum(speed, 1e-300)[..., None]
@@ -355,7 +346,7 @@ class CollisionDistance(VelocityCost):
     sight_distance: PerAgent = parameter(8.0, unit="m", low=2.0, high=15.0, source="UMANS, from its steps")
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``(d - f) + angle(v', p) + ||v'| - |p|| / |p| + angle(v', v)``, f the free path, at most d."""
+        # (d - f) + angle(v', p) + ||v'| - |p|| / |p| + angle(v', v), f the free path, at most d
         sight = world.each(self.sight_distance, "sight_distance")[:, None]
         speed, wanted = length(candidates), length(world.wish)[:, None]
         time = world.first_contact(candidates)

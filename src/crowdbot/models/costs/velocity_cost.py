@@ -91,7 +91,6 @@ class Sum(VelocityCost):
                 raise InputError(f"weight {weight} of {cost} is not finite")
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return the weighted sum ``[N, C]``."""
         total = np.zeros(candidates.shape[:2])
         for weight, cost in self.terms:
             if weight != 0.0:
@@ -99,7 +98,6 @@ class Sum(VelocityCost):
         return total
 
     def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
-        """Return the weighted sum of the gradients ``[N, 2]``."""
         total = np.zeros_like(velocity)
         for weight, cost in self.terms:
             if weight != 0.0:
@@ -107,7 +105,6 @@ class Sum(VelocityCost):
         return total
 
     def best(self, world: NeighborView) -> Floats:
-        """Return the best velocities of a single term."""
         if len(self.terms) != 1 or not self.terms[0][0] > 0.0:
             return super().best(world)
         return self.terms[0][1].best(world)
@@ -155,14 +152,14 @@ class Force(VelocityCost):
         """Return the accelerations ``[N, 2]`` [m/s^2]."""
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``|v' - (v + F dt)|^2 / (2 dt)``."""
+        # |v' - (v + F dt)|^2 / (2 dt)
         to = self.best(world)
         return np.asarray(length(candidates - to[:, None]) ** 2 / (2.0 * world.dt))
 
     def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
-        """Return ``(velocity - v) / dt - F``."""
+        # (velocity - v) / dt - F
         return np.asarray((velocity - world.velocity) / world.dt - self.force(world))
 
     def best(self, world: NeighborView) -> Floats:
-        """Return ``v + F dt``."""
+        # v + F dt
         return np.asarray(world.velocity + world.dt * self.force(world))

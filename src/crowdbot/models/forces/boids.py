@@ -289,7 +289,6 @@ class Boids(CrowdModel):
         check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking, seen, out = begin_step(scene, dt)
         simulator = self.variant == "crowdbot"
         reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")

@@ -257,11 +257,10 @@ class EscapePanic(CrowdModel):
         check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the mean velocities ``[E, A, 2]`` [m/s] over the next ``dt`` [s]; ``rng`` is not used."""
+        # mean velocities [E, A, 2] [m/s] over the next dt [s]; rng is not used
         return self._move_agents(scene, dt)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later with the final velocities in its memory; ``rng`` is not used."""
         mean, last = self._move_agents(scene, dt)
         return scene.advance(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
 

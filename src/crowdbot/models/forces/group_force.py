@@ -370,7 +370,6 @@ class GroupForce(CrowdModel):
         check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking, seen, out = begin_step(scene, dt)
         package = self.variant == "pysocialforce"
         top = speed_limit(self.max_speed, scene)

@@ -232,15 +232,12 @@ class HeadedSocialForce(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """Initial angular velocity of a new agent."""
         return {MEMORY: 0.0}
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         return self._move(scene, dt)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, with the new headings and angular velocities; ``rng`` is not used."""
         velocity, heading, turn = self._move(scene, dt)
         after, own = scene.advance(velocity, dt), movable(scene)
         memory = {**scene.memory, MEMORY: np.where(own, turn, 0.0)}

@@ -240,7 +240,6 @@ class SocialForce(CrowdModel):
         check_variant(self, self.variant, VARIANTS)
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking, seen, out = begin_step(scene, dt)
         umans = self.variant == "umans2018"
         if umans and scene.preferred_velocity is None:  # in the library, the goal is reached within the agent's radius

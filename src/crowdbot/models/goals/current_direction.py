@@ -42,11 +42,9 @@ class CurrentDirection(Goal):
             raise InputError(f"current-direction: steps {self.steps} and adaptive cannot be combined; give one of them")
 
     def resolve(self, past: Windows) -> Floats:
-        """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
         return extrapolate(past.position[:, -1], past.present[:, -1], self.velocity(past), self.horizon)
 
     def velocity(self, past: Windows) -> Floats:
-        """Return the averaged velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
         if self.adaptive:
             return steady_velocity(past)
         here = past.present[:, -1]

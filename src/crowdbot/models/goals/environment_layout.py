@@ -117,7 +117,7 @@ class EnvironmentLayout(Goal):
 
     @classmethod
     def at(cls, layout: PlaceLayout) -> Self:
-        """Return the goal for a place with its exits; without exits, they are the openings of the outermost walls."""
+        # goal for a place with its exits; without exits, they are the openings of the outermost walls
         return cls(layout.exits, layout.rings) if layout.exits else cls.of(layout.rings)
 
     @classmethod
@@ -150,20 +150,17 @@ class EnvironmentLayout(Goal):
 
     @property
     def history(self) -> float:
-        """Observed time that the goal reads [s]; 0: all rows."""
         return 0.0 if self.pace is None else self.pace.history
 
     def velocity(self, past: Windows) -> Floats:
-        """Return the velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
         return steady_velocity(past) if self.pace is None else self.pace.velocity(past)
 
     def resolve(self, past: Windows) -> Floats:
-        """Return the goal of each person ``[W, A, 2]`` [m] in the median direction; 0 for absent people."""
         velocity, turn, weight, here = self._candidates(past)
         return extrapolate(past.position[:, -1], here, rotate(velocity, median(turn, weight)), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
-        """Return straight on (slot 0) and the direction to each exit (slots 1 to G) with their posterior."""
+        # straight on (slot 0) and the direction to each exit (slots 1 to G) with their posterior
         velocity, turn, weight, here = self._candidates(past)
         place = np.where(here[..., None], past.position[:, -1], 0.0)
         way = np.where(here[..., None, None], rotate(velocity[:, :, None], turn), 0.0)

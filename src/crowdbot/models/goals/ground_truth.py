@@ -42,7 +42,6 @@ class GroundTruth(Goal):
             )
 
     def resolve(self, past: Windows) -> Floats:
-        """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
         future = self.future[self._window_indices(past)]
         goal = np.where(past.present[:, -1, :, None], past.position[:, -1], 0.0)
         for step in range(future.present.shape[1]):
@@ -51,7 +50,6 @@ class GroundTruth(Goal):
         return goal
 
     def velocity(self, past: Windows) -> Floats:
-        """Return the velocity of the last displacement ``[W, A, 2]`` [m/s]; the goal does not define a speed."""
         return observed_velocity(past)
 
     def _window_indices(self, past: Windows) -> NDArray[np.int64]:

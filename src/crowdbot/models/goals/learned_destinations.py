@@ -201,15 +201,12 @@ class LearnedDestinations(Goal):
 
     @property
     def history(self) -> float:
-        """Observed time that the goal reads [s]."""
         return self.pace.history
 
     def velocity(self, past: Windows) -> Floats:
-        """Return the learned velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
         return self.pace.velocity(past)
 
     def resolve(self, past: Windows) -> Floats:
-        """Return the goal of each person ``[W, A, 2]`` [m] in the median direction; 0 for absent people."""
         velocity, here = self.velocity(past), past.present[:, -1]
         moving = here & (length(velocity) > MOVING)
         turn = np.zeros(here.shape)
@@ -218,7 +215,7 @@ class LearnedDestinations(Goal):
         return extrapolate(past.position[:, -1], here, rotate(velocity, turn), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
-        """Return straight on (slot 0) and the direction to each exit (slots 1 to G), weighted by the samples."""
+        # straight on (slot 0) and the direction to each exit (slots 1 to G), weighted by the samples
         velocity, here = self.velocity(past), past.present[:, -1]
         weight = np.zeros((*here.shape, len(self.exits) + 1))
         turn = np.zeros(weight.shape)

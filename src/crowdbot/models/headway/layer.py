@@ -115,16 +115,13 @@ class HeadwayLayer(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """Initial values in ``Scene.memory`` for a new agent: those of the model under the layer."""
         return self.model.memory_at_start
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]."""
         scene = self._avoid_robots(scene, dt)
         return self._limit(scene, self.model.velocity(scene, dt, rng), dt)
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, with the headings and the memory of the model under the layer."""
         seen = self._avoid_robots(scene, dt)
         after = self.model.step(seen, dt, rng)
         later = scene.advance(self._limit(seen, after.velocity, dt), dt)
@@ -132,7 +129,6 @@ class HeadwayLayer(CrowdModel):
 
     @property
     def is_individual(self) -> bool:
-        """Whether :meth:`individual` draws differences between people."""
         return bool(np.any(self.robot_caution) and np.any(self.robot_gap))
 
     def individual(self, agents: int, rng: np.random.Generator) -> CrowdModel:

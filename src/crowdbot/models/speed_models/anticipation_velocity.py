@@ -220,11 +220,9 @@ class AnticipationVelocity(CrowdModel):
     max_speed: PerAgent | None = None
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]."""
         return self._move(scene, dt, rng)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, with the headings of the model."""
         velocity, heading = self._move(scene, dt, rng)
         return scene.advance(velocity, dt).replace(heading=heading)
 

@@ -211,7 +211,6 @@ class CollisionFreeSpeed(CrowdModel):
     max_speed: PerAgent | None = None
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         start = begin_rows(scene, dt, self.max_speed)
         near = start.neighbors(self.neighbor_distance, self.max_neighbors)
         laws, heading = parameter_rows(self, LAW, scene.shape), rows(scene.heading)

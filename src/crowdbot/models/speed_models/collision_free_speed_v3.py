@@ -187,15 +187,12 @@ class CollisionFreeSpeedV3(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """Initial steering angle of a new agent."""
         return {MEMORY: 0.0}
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         return self._move(scene, dt)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, with the updated memory ``steering_angle``."""
         velocity, angle = self._move(scene, dt)
         angle = np.where(movable(scene), angle, 0.0)
         return scene.advance(velocity, dt).replace(memory={**scene.memory, MEMORY: angle})

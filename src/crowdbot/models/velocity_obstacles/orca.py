@@ -202,7 +202,6 @@ class ORCA(CrowdModel):
     reciprocal: bool = False
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         E, A = shape = scene.shape
         if 0 < E * A <= SMALL and A < CROWD and 0.0 < dt < math.inf:
             position, velocity, radius, own_limit, *others = scene.step_arrays()

@@ -356,16 +356,13 @@ class VOG(CrowdModel):
     max_speed: PerAgent | None = None
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         return self._choose_velocity(scene, dt)[..., :2]
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """Initial calm of a new agent."""
         return {MEMORY: CALM}
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, with the updated memory ``vog_calm``."""
         out = self._choose_velocity(scene, dt)
         calm = np.where(movable(scene), out[..., 2] + 10.0 * dt, CALM)
         return scene.advance(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})

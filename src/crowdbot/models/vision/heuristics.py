@@ -245,7 +245,6 @@ class Heuristics(CrowdModel):
     max_speed: PerAgent | None = None
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking, seen, out = begin_step(scene, dt)
         near = neighbors_of(self, scene, seen, walking)
         relaxation = np.maximum(per_agent(self.relaxation_time, scene.shape, "relaxation_time"), dt)

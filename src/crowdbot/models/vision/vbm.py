@@ -178,11 +178,11 @@ class VBM(CrowdModel):
             raise InputError(f"VBM: rays = {self.rays!r} is not allowed, it must be a whole number, 2 to {MOST_RAYS}")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` varies the sideways push."""
+        # rng varies the sideways push
         return self._choose_velocity(scene, dt, rng)[..., :2]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later; standing agents turn, too."""
+        # standing agents turn, too
         out = self._choose_velocity(scene, dt, rng)
         after = scene.advance(out[..., :2], dt)
         turned = np.where(movable(scene), np.arctan2(out[..., 3], out[..., 2]), after.heading)

@@ -285,7 +285,7 @@ class WarpDriver(CrowdModel):
             raise InputError(f"WarpDriver: blur = {self.blur} is not allowed, it must be a number from 0.05 to 1")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` breaks symmetries."""
+        # rng breaks symmetries
         if rng is None:
             return self.plan(scene, dt, np.zeros((1, SAMPLES)))
         return self.plan(scene, dt, rng.uniform(-SPREAD, SPREAD, (scene.position[..., 0].size, SAMPLES)))

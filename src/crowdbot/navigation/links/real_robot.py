@@ -77,5 +77,4 @@ class RealRobotNavigator(ExternalNavigator):
 
     @property
     def mirrors(self) -> bool:
-        """Whether poses from outside move the robot of the trial, instead of velocities."""
         return bool(self.odometry)

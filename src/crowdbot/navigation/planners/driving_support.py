@@ -87,7 +87,7 @@ class RDSNavigator(Navigator):
             check_number("RDSNavigator", name, getattr(self, name), "m", min=0.0)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the permitted twist nearest to that towards the waypoint."""
+        # permitted twist nearest to that towards the waypoint
         limits = observation.limits
         top, x, y = min(self.speed, limits.max_speed), *observation.pose[:2]
         cos, sin = math.cos(observation.heading), math.sin(observation.heading)

@@ -87,7 +87,6 @@ class TimeElasticBandNavigator(Navigator):
         check_number("TimeElasticBandNavigator", "iterations", self.iterations, min=1, max=1000, whole=True)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the twist along the beginning of the best band."""
         return move_with(observation, self.velocity(observation), self.speed)
 
     def velocity(self, observation: Observation) -> Floats:

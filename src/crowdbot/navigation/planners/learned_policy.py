@@ -117,7 +117,6 @@ class PolicyNavigator(Navigator):
         check_number("PolicyNavigator", "margin", self.margin, "m", exclusive_min=0.0)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the twist of the policy."""
         out, asking = np.zeros((1, 3)), np.ones(1, np.bool_)
         self._move(_as_batch(observation), asking, out)
         return Twist(*out[0].tolist())

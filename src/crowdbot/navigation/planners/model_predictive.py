@@ -133,7 +133,6 @@ class MPCNavigator(Navigator):
             raise InputError(f"MPCNavigator: mixture = {self.mixture!r} must be True or False")
 
     def act(self, observation: Observation) -> Twist:
-        """Return the first twist of the cheapest plan."""
         steps = max(2, round(self.horizon / STEP))
         rollout = roll_out(observation, self.speed, steps, STEP)
         cost = progress_cost(rollout, min(self.speed, observation.limits.max_speed), self.smoothness)

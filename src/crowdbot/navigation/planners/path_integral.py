@@ -198,11 +198,10 @@ class MPPINavigator(Navigator):
         check_number("MPPINavigator", "seed", self.seed, min=0, whole=True)
 
     def begin(self, observation: Observation) -> Floats:
-        """Return the first plan ``[T, 2]``: straight to the waypoint, then to the goal."""
+        # first plan [T, 2]: straight to the waypoint, then to the goal
         return self._guide(observation, max(2, round(self.horizon / STEP)))
 
     def act(self, observation: Observation, memory: Floats) -> tuple[Action, Floats]:
-        """Return the first twist of the new plan, and the plan at the next decision."""
         plans = self._vary(observation, memory)
         cost = self._cost(observation, plans)
         weight = np.exp((cost.min() - cost) / self.temperature)

@@ -72,7 +72,6 @@ class PotentialFieldNavigator(Navigator):
         check_number("PotentialFieldNavigator", "gain", self.gain, "m3/s2", min=0.0)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the reachable twist that fits the velocity of the field best."""
         return move_with(observation, self.velocity(observation), self.speed)
 
     def velocity(self, observation: Observation) -> Floats:

@@ -78,11 +78,9 @@ class PredictedOccupancyNavigator(Navigator):
         check_number("PredictedOccupancyNavigator", "samples", self.samples, min=1, max=100, whole=True)
 
     def begin(self, observation: Observation) -> tuple[float, Any]:
-        """Return the memory before the first scan: time of the last scan [s], state of the predictor."""
         return NOTHING
 
     def act(self, observation: Observation, memory: tuple[float, Any]) -> tuple[Action, tuple[float, Any]]:
-        """Return the action among the predicted returns, and the next memory."""
         scanned, state = memory
         scan, predictor = observation.scan, TrackedScene()
         if isinstance(scan, Scan) and float(np.max(scan.time)) > scanned:

@@ -86,7 +86,6 @@ class SocialForceNavigator(Navigator):
         check_number("SocialForceNavigator", "anisotropy", self.anisotropy, "", min=0.0, max=1.0)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the reachable twist that fits the velocity of the forces best."""
         return move_with(observation, self.velocity(observation), self.speed)
 
     def velocity(self, observation: Observation) -> Floats:

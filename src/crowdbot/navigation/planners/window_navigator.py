@@ -83,7 +83,6 @@ class DynamicWindowNavigator(Navigator):
             check_number("DynamicWindowNavigator", name, getattr(self, name), unit, min=0.0)
 
     def act(self, observation: Observation) -> Twist:
-        """Return the best admissible twist."""
         limits, now = observation.limits, observation.twist
         top = min(self.speed, limits.max_speed)
         twists = window_twists(now, limits, top, self.window)

@@ -70,16 +70,13 @@ class ProcessNavigator(Navigator):
             raise InputError(f"ProcessNavigator: {problem}; sandbox=false runs the code without one")
 
     def title(self, robot: str = "") -> str:
-        """Return the name of the navigator for messages."""
         return self.address or shlex.split(self.command)[0]
 
     def begin(self, observation: Observation) -> Any:
-        """Return the first memory of the navigator in the process, as a text."""
         found = self._ask({"call": "begin", "observation": encode_observation(observation)})
         return self._memory(found)
 
     def act(self, observation: Observation, memory: Any) -> tuple[Action, Any]:
-        """Return the action of the navigator in the process, and its next memory."""
         found = self._ask({"call": "act", "observation": encode_observation(observation), "memory": memory})
         try:
             action = decode_action(found)

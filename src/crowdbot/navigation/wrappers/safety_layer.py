@@ -179,11 +179,9 @@ class _SafeNavigator(Navigator):
     layer: SafetyLayer
 
     def begin(self, observation: Observation) -> tuple[Any, ...]:
-        """Return the memory before the first decision, as a plain tuple, which keyframes can hold."""
         return tuple(SafetyState(self.inner.begin(observation)))
 
     def act(self, observation: Observation, memory: tuple[Any, ...]) -> tuple[Action, tuple[Any, ...]]:
-        """Return the action that the layer allows, and the next memory."""
         action, inner = self.inner.decide(observation, memory[0])
         twist, state = self.layer.limit(observation, action.twist, SafetyState(*memory))
         return Action(twist, action.joints), tuple(state._replace(inner=inner))
@@ -196,7 +194,6 @@ class _SafeNavigator(Navigator):
         timer: Callable[[], float] | None = None,
         limit: float | None = None,
     ) -> Decisions:
-        """Return the decisions of the navigator in N environments, as the layer allows them."""
         wanted = self.inner.decide_batch(batch, [memory[0] for memory in memories], robot, timer, limit)
         decisions = wanted._replace(memories=list(memories))
         for k, memory in enumerate(memories):

@@ -89,12 +89,11 @@ max_neighbors=15, reaction=0.3)
         return max(4, round(self.size / self.cell))
 
     def begin(self, observation: Observation) -> tuple[Any, ...]:
-        """Return the empty map: grid of log-odds, cell of its lower corner, time of the last scan, time."""
+        # empty map: grid of log-odds, cell of its lower corner, time of the last scan, time
         corner = self._corner(observation)
         return np.zeros((self.cells, self.cells)), *corner, -math.inf, observation.time
 
     def act(self, observation: Observation, memory: tuple[Any, ...]) -> tuple[Action, tuple[Any, ...]]:
-        """Return the action among the occupied cells, and the next map."""
         grid, i, j, scanned, time = memory
         corner = self._corner(observation)
         grid = _shifted(grid, corner[0] - i, corner[1] - j)

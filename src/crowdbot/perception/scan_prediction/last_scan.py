@@ -122,11 +122,9 @@ class LastScan(ScanPredictor):
     """
 
     def begin(self) -> tuple[Scan, ...]:
-        """Return no scans."""
         return ()
 
     def update(self, scan: Scan, state: tuple[Scan, ...]) -> tuple[Scan, ...]:
-        """Return the last scans."""
         return (*state, scan)[-MEMORY:]
 
     def forecast(
@@ -137,7 +135,6 @@ class LastScan(ScanPredictor):
         samples: int = 1,
         rng: np.random.Generator | None = None,
     ) -> ScanForecast:
-        """Return the last ranges at all times, as one future."""
         there = continue_motion(state, ahead) if pose is None else pose
         ranges = np.where(state[-1].ranges[0] > 0.0, state[-1].ranges[0], np.inf)
         repeated = np.broadcast_to(ranges, (1, len(ahead), len(ranges))).copy()
@@ -162,7 +159,6 @@ class MovedScan(LastScan):
         samples: int = 1,
         rng: np.random.Generator | None = None,
     ) -> ScanForecast:
-        """Return the last surfaces from the future poses, as one future."""
         there = continue_motion(state, ahead) if pose is None else pose
         nobody = np.zeros((len(ahead), 0, 2))
         angles = state[-1].angles

@@ -184,12 +184,10 @@ class LearnedScene(TrackedScene):
         self._layers()
 
     def begin(self) -> LearnedState:
-        """Return the state without scans."""
         start = super().begin()
         return LearnedState(start.scans, start.tracker, start.tracks)
 
     def update(self, scan: Scan, state: SceneState) -> LearnedState:
-        """Return the state after a scan."""
         after = super().update(scan, state)
         before = state.earlier if isinstance(state, LearnedState) else ()
         now = EarlierTracks(after.tracks.time, after.tracks.ids, after.tracks.velocity)
@@ -197,7 +195,6 @@ class LearnedScene(TrackedScene):
         return LearnedState(after.scans, after.tracker, after.tracks, (*kept, now))
 
     def correct(self, state: SceneState, ahead: Floats) -> Floats:
-        """Return the learned correction ``[T, A, 2]`` of the straight paths [m]."""
         if not len(state.tracks) or not isinstance(state, LearnedState):
             return super().correct(state, ahead)
         features = track_features(state.tracks, state.earlier, state.scans)

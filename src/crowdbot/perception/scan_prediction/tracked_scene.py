@@ -72,11 +72,9 @@ class TrackedScene(ScanPredictor):
         check_number("TrackedScene", "range_max", self.range_max, "m", exclusive_min=0.0)
 
     def begin(self) -> SceneState:
-        """Return the state without scans."""
         return SceneState((), self.tracker.begin(), Tracks.none(0.0))
 
     def update(self, scan: Scan, state: SceneState) -> SceneState:
-        """Return the state after a scan."""
         found = self.detector.detect(scan)
         tracks, tracker = self.tracker.update(found, found.time, state.tracker)
         return SceneState((*state.scans, scan)[-self.memory :], tracker, tracks)
@@ -89,7 +87,6 @@ class TrackedScene(ScanPredictor):
         samples: int = 1,
         rng: np.random.Generator | None = None,
     ) -> ScanForecast:
-        """Return scans of the people who walk on and of the surfaces that stay."""
         tracks = state.tracks
         place = np.concatenate([tracks.position, tracks.velocity], axis=-1)[None].repeat(samples, axis=0)
         if samples > 1 and len(tracks):

@@ -78,7 +78,6 @@ class Anchors(Predictor):
             )
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         why = incompatibility(past)
         if why:
@@ -102,7 +101,6 @@ class Anchors(Predictor):
         return found["shapes"], found["share"]
 
     def note(self, past: Windows) -> str:
-        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = incompatibility(past)
         if why:
             return f"anchors: {why}; a baseline is used instead"

@@ -153,7 +153,6 @@ class AnchorNet(Predictor):
             raise InputError(f"anchor-net: contact = {self.contact} m must be finite and at least 0")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         why = incompatibility(past)
         if why:
@@ -203,7 +202,6 @@ class AnchorNet(Predictor):
         return Modes(path, bends.probability, single, bends.window, bends.slot)
 
     def note(self, past: Windows) -> str:
-        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = incompatibility(past)
         if why:
             return f"anchor-net: {why}; a baseline is used instead"

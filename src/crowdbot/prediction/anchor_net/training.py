@@ -248,12 +248,12 @@ class AnchorNetTraining(Trainable):
         self.optimiser = torch.optim.AdamW(self.layers.parameters(), lr=config.rate, weight_decay=config.decay)
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
-        """Return placeholders for the batches of an epoch; each update draws random people."""
+        # placeholders for the batches of an epoch; each update draws random people
         del rng
         return [None] * -(-len(self.material) // self.config.people)
 
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
-        """Run one update; people and their augmentation are drawn from a stream given by the seed and the number."""
+        # run one update; people and their augmentation are drawn from a stream given by the seed and the number
         del batch, rng
         how, own = self.config, stream(self.config.seed, "batch", number)
         shown = make_batch(
@@ -273,7 +273,6 @@ class AnchorNetTraining(Trainable):
         return {"loss": float(loss.detach())}
 
     def check(self) -> Mapping[str, float]:
-        """Return ADE and FDE [m] of the nearest future, and ADE of the single trajectory."""
         numbers = self.numbers()
         own, company, there, missed = make_batch(
             self.watched, np.arange(len(self.watched)), NO_AUGMENTATION, stream(0, "check"), self.config.reach
@@ -297,17 +296,15 @@ class AnchorNetTraining(Trainable):
         return found | ({"reach": np.array(self.config.reach)} if bounded else {})
 
     def weights(self) -> Mapping[str, Any]:
-        """Return the averaged weights with probabilities calibrated on the validation data."""
+        # averaged weights with probabilities calibrated on the validation data
         return calibrate_confidence(self.numbers(), self.watched)
 
     def state(self) -> Mapping[str, Any]:
-        """Return layers, optimizer and averaged weights."""
         return {
             "layers": dict(self.layers.state_dict()), "optimiser": self.optimiser.state_dict(), "mean": self.mean,
         }  # fmt: skip
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Restore a result of :meth:`state`."""
         kept = to_tensors(dict(state), self.device)
         self.layers.load_state_dict(kept["layers"])
         self.optimiser.load_state_dict(kept["optimiser"])

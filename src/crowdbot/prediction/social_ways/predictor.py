@@ -178,12 +178,10 @@ class SocialWays(LearnedPredictor):
 
     @property
     def kind(self) -> str:
-        """Name on the command line."""
         return KIND
 
     @property
     def name(self) -> str:
-        """Name on the command line, with parameters that differ from their defaults."""
         return super().name + (f"(contact={self.contact:g})" if self.contact != CONTACT else "")
 
     def network(self, source: str = "") -> SocialWaysNetwork:

@@ -129,11 +129,9 @@ class SocialWaysTraining(Trainable):
         self.data += f"-{hashlib.blake2b(content, digest_size=6).hexdigest()}"
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
-        """Return batches of approximately ``config.batch`` people."""
         return list(self.samples.batches(rng, self.config.batch))
 
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
-        """Run a discriminator step, unrolled discriminator steps, and a generator step."""
         self._rates(number, total)
         tensors = self._to_tensors(augment(self.samples.batch(batch), self.samples.observe, self.config, rng))
         c = self.config
@@ -156,7 +154,7 @@ class SocialWaysTraining(Trainable):
         return losses
 
     def check(self) -> Mapping[str, float]:
-        """Return best-of-20 ADE and FDE per person [m], always with the same noise."""
+        # best-of-20 ADE and FDE per person [m], always with the same noise
         kept = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
         self.generator.load_state_dict(self.mean)
         rng = stream(0, "check")
@@ -194,11 +192,9 @@ class SocialWaysTraining(Trainable):
         return seen.world(place.double().cpu().numpy())
 
     def weights(self) -> Mapping[str, Any]:
-        """Return the (averaged) generator."""
         return self.mean
 
     def state(self) -> Mapping[str, Any]:
-        """Return both networks, both optimizers and the averaged weights."""
         return {
             "generator": dict(self.generator.state_dict()),
             "discriminator": dict(self.discriminator.state_dict()),
@@ -208,7 +204,6 @@ class SocialWaysTraining(Trainable):
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Restore a state."""
         kept = to_tensors(dict(state), self.device)
         self.mean = kept.pop("mean")
         for name, value in kept.items():

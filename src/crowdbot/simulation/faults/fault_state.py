@@ -36,7 +36,6 @@ class FaultOrder(DecisionOrder):
     state: str
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError`: nobody can give such an order."""
         raise InputError("a fault order is written by a run and cannot be given to one; write a <fault> in the trial")
 
     def apply(self, simulation: OrderTarget) -> None:

@@ -104,7 +104,6 @@ class AvatarOrder(Order):
         return BodyPose(self.x, self.y, self.heading, self.head, self.left_hand, self.right_hand, self.skeleton)
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if there is no such external avatar, or the time is too far ahead."""
         super().check(simulation)
         known = {avatar.name: avatar.source for avatar in simulation.trial.avatars}
         if self.avatar not in known:
@@ -119,7 +118,6 @@ class AvatarOrder(Order):
         check_time(self, float(simulation.world.times[self.environment]))
 
     def apply(self, simulation: OrderTarget) -> None:
-        """Add the sample."""
         world, e = simulation.world, self.environment
         time = float(world.times[e]) if self.time is None else self.time
         give_pose(world, self.avatar, time, self.pose, e)
@@ -166,7 +164,6 @@ class RobotPoseOrder(Order):
         return BodyPose(self.x, self.y, self.heading)
 
     def check(self, simulation: Any) -> None:
-        """Raise :class:`InputError` if the robot does not take poses, or the time is too far ahead."""
         super().check(simulation)
         robot = simulation.control_of(self.robot).robot
         if robot.mirror is None or robot.mirror.source != "external":
@@ -176,7 +173,6 @@ class RobotPoseOrder(Order):
         check_time(self, float(simulation.world.times[self.environment]))
 
     def apply(self, simulation: Any) -> None:
-        """Add the sample."""
         world, e = simulation.world, self.environment
         time = float(world.times[e]) if self.time is None else self.time
         give_pose(world, f"robot/{self.robot}", time, self.pose, e)

@@ -22,7 +22,6 @@ class DecisionOrder(Order):
     robot: str
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError`: nobody can give such an order."""
         what = type(self).__name__.removesuffix("DecisionOrder").lower()
         raise InputError(f"a {what}-decision order is written by a run and cannot be given to one")
 

@@ -23,7 +23,6 @@ class TrialOrder(Order):
         """Return the changed trial."""
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if the trial cannot change in this way while it runs."""
         super().check(simulation)
         if simulation.count > 1:
             name = type(self).__name__
@@ -31,7 +30,6 @@ class TrialOrder(Order):
         check_overrides(simulation, self.new_trial(simulation), added=True)
 
     def apply(self, simulation: Any) -> None:
-        """Change the trial."""
         apply_overrides(simulation, self.new_trial(simulation))
 
 
@@ -48,7 +46,6 @@ class ParameterOrder(TrialOrder):
     value: str
 
     def new_trial(self, simulation: Any) -> Trial:
-        """Return the trial with the new value."""
         trial: Trial = simulation.trial
         return apply_values(trial, {self.path: self.value}, place=f"order parameter of trial {trial.name!r}")
 
@@ -78,7 +75,6 @@ class AddElementOrder(TrialOrder):
     parent: str = ""
 
     def new_trial(self, simulation: Any) -> Trial:
-        """Return the trial with the element."""
         trial: Trial = simulation.trial
         place = f"order add-element of trial {trial.name!r}"
         new = add_element(trial, self.xml, self.parent, place=place, trust=needs_trust(trial))
@@ -101,7 +97,6 @@ class RemoveElementOrder(TrialOrder):
     path: str
 
     def new_trial(self, simulation: Any) -> Trial:
-        """Return the trial without the element."""
         trial: Trial = simulation.trial
         place = f"order remove-element of trial {trial.name!r}"
         return remove_element(trial, self.path, place=place, trust=needs_trust(trial))

@@ -44,7 +44,6 @@ class GoalOrder(Order):
             raise InputError(f"GoalOrder: tolerance = {self.tolerance!r} must be finite and above 0")
 
     def check(self, simulation: Any) -> None:
-        """Raise :class:`InputError` if there is no such robot, or it cannot be at the goal or has no path to it."""
         super().check(simulation)
         control, place = simulation.control_of(self.robot), (float(self.x), float(self.y))
         start = f"GoalOrder: robot {self.robot!r}"
@@ -60,7 +59,6 @@ class GoalOrder(Order):
                 raise InputError(f"{start} has no path to {place[0]:g},{place[1]:g}: {reason}") from None
 
     def apply(self, simulation: Any) -> None:
-        """Set the goal."""
         control, e, place = simulation.control_of(self.robot), self.environment, (float(self.x), float(self.y))
         redirect_person(simulation.world, int(simulation.world.ids[e, control.agent]), *place, e)
         control.change_goal(e, place, None if self.tolerance is None else float(self.tolerance))

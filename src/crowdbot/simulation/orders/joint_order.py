@@ -34,7 +34,6 @@ class JointOrder(Order):
     position: float
 
     def check(self, simulation: Any) -> None:
-        """Raise :class:`InputError` if there is no such robot or joint, or it cannot be at the position."""
         super().check(simulation)
         control = simulation.control_of(self.robot)
         try:
@@ -48,6 +47,5 @@ class JointOrder(Order):
             raise InputError(f"JointOrder: robot {self.robot!r}: {error}") from None
 
     def apply(self, simulation: Any) -> None:
-        """Move the joint."""
         values = (self.environment, self.joint, float(self.position))
         move_robot_joint(simulation.control_of(self.robot), simulation.world, *values)

@@ -92,14 +92,12 @@ class VelocityOrder(Order):
         return Twist(float(self.forward), float(self.turn), float(self.left))
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if there is no such robot."""
         super().check(simulation)
         simulation.agent_of(self.robot)
         if any(robot.name == self.robot and robot.mirror is not None for robot in simulation.trial.robots):
             raise InputError(f"VelocityOrder: robot {self.robot!r} has <pose>; it is where its source says")
 
     def apply(self, simulation: OrderTarget) -> None:
-        """Set the command of the robot."""
         simulation.command(self.robot, self.twist, self.environment)
 
 

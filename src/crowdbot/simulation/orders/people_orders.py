@@ -41,7 +41,6 @@ class AddPersonOrder(Order):
     radius: float = 0.25
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if a value is not allowed, or the goal cannot be reached."""
         super().check(simulation)
         for name, value, most in (("speed", self.speed, FASTEST), ("radius", self.radius, WIDEST)):
             if not 0.0 < value <= most:
@@ -50,7 +49,6 @@ class AddPersonOrder(Order):
         check_room(simulation.world, self.environment)
 
     def apply(self, simulation: OrderTarget) -> None:
-        """Add the person."""
         place, goal = (float(self.x), float(self.y)), (float(self.goal_x), float(self.goal_y))
         add_person(simulation.world, place, goal, float(self.speed), float(self.radius), self.environment)
 
@@ -66,12 +64,10 @@ class RemoveOrder(Order):
     person: int
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if the person is not present, or is a robot."""
         super().check(simulation)
         check_person(simulation, self.person, self.environment)
 
     def apply(self, simulation: OrderTarget) -> None:
-        """Remove the person, who may have left in the meantime."""
         if is_present(simulation, self.person, self.environment):
             remove_person(simulation.world, self.person, self.environment)
 
@@ -92,14 +88,12 @@ class MoveOrder(Order):
     heading: float | None = None
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if nobody with this id is present, or a value is not allowed."""
         super().check(simulation)
         check_place(self.x, self.y)
         check_place(self.heading or 0.0, 0.0)
         _check_avatar(simulation, slot_of(simulation.world, self.person, self.environment), self.person)
 
     def apply(self, simulation: OrderTarget) -> None:
-        """Move the person or robot."""
         if is_present(simulation, self.person, self.environment):
             heading = None if self.heading is None else float(self.heading)
             move_agent(simulation.world, self.person, float(self.x), float(self.y), heading, self.environment)
@@ -119,14 +113,12 @@ class RedirectOrder(Order):
     y: float
 
     def check(self, simulation: OrderTarget) -> None:
-        """Raise :class:`InputError` if the person is not present, or cannot reach the goal."""
         super().check(simulation)
         slot = check_person(simulation, self.person, self.environment)
         x, y = simulation.world.scene.position[self.environment, slot].tolist()
         check_goal(simulation.world, (x, y), (self.x, self.y), self.environment)
 
     def apply(self, simulation: OrderTarget) -> None:
-        """Give the person the goal."""
         if is_present(simulation, self.person, self.environment):
             redirect_person(simulation.world, self.person, float(self.x), float(self.y), self.environment)
 

@@ -66,7 +66,6 @@ class PushOrder(Order):
         return float(self.force) * float(self.duration)
 
     def check(self, simulation: Any) -> None:
-        """Raise :class:`InputError` if the person is not present, or moves as something outside says."""
         super().check(simulation)
         slot = check_person(simulation, self.person, self.environment)
         trial = simulation.trial
@@ -78,7 +77,6 @@ class PushOrder(Order):
             raise InputError("PushOrder: the physics world has no bodies for people; use slots of at least 1")
 
     def apply(self, simulation: Any) -> None:
-        """Push the person, who may have left in the meantime."""
         if not is_present(simulation, self.person, self.environment):
             return
         slot = slot_of(simulation.world, self.person, self.environment)

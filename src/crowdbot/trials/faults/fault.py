@@ -181,7 +181,6 @@ class LateSensor(SensorFault):
 
     @classmethod
     def number_names(cls) -> tuple[str, ...]:
-        """Return the names of the numbers."""
         return (*super().number_names(), "delay")
 
 
@@ -213,11 +212,9 @@ class LocalizationJump(Fault):
 
     @classmethod
     def number_names(cls) -> tuple[str, ...]:
-        """Return the names of the numbers."""
         return (*super().number_names(), "deviation", "heading")
 
     def shift_pose(self, numbers: NDArray[np.float64], draws: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the error, see :meth:`Fault.shift_pose`."""
         return draws * numbers[:, [2, 2, 3]]
 
 
@@ -239,11 +236,9 @@ class LocalizationOffset(Fault):
 
     @classmethod
     def number_names(cls) -> tuple[str, ...]:
-        """Return the names of the numbers."""
         return (*super().number_names(), "x", "y", "heading")
 
     def shift_pose(self, numbers: NDArray[np.float64], draws: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the error, see :meth:`Fault.shift_pose`."""
         return numbers[:, 2:5]
 
 
@@ -270,11 +265,9 @@ class LostCommands(Fault):
 
     @classmethod
     def number_names(cls) -> tuple[str, ...]:
-        """Return the names of the numbers."""
         return (*super().number_names(), "share")
 
     def lose_commands(self, numbers: NDArray[np.float64], shares: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which commands are lost, see :meth:`Fault.lose_commands`."""
         return shares < numbers[:, 2]
 
 
@@ -313,13 +306,11 @@ class SlippingWheel(Fault):
 
     @classmethod
     def number_names(cls) -> tuple[str, ...]:
-        """Return the names of the numbers."""
         return (*super().number_names(), "slip")
 
     def change_commands(
         self, numbers: NDArray[np.float64], command: NDArray[np.float64], radius: float
     ) -> NDArray[np.float64]:
-        """Return the commands as the drive gets them, see :meth:`Fault.change_commands`."""
         sign = SIDES[self.side]
         lost = numbers[:, 2] * (command[:, 0] - sign * radius * command[:, 1])
         changed = command.copy()

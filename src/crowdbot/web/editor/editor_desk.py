@@ -88,7 +88,6 @@ class EditorDesk(Desk):
         self._check()
 
     def greet(self) -> dict[str, Any]:
-        """Return the state for a new window."""
         return self._state()
 
     @command

@@ -58,7 +58,6 @@ class EvaluationDesk(Desk):
         self._lock = threading.RLock()
 
     def greet(self) -> dict[str, Any]:
-        """Return the state for a new window."""
         return {**self._state(), "first": self.first or ""}
 
     @command
@@ -170,7 +169,6 @@ class EvaluationDesk(Desk):
         return {"file": file, "seed": seed, "episode": episode, "at": max(0.0, end - BEFORE)}
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
-        """Return the report of an evaluation, ``NAME/report.html``."""
         name, _, file = path.partition("/")
         found = self._folder(name) / "report.html"
         if file != "report.html" or not found.is_file():
@@ -178,7 +176,6 @@ class EvaluationDesk(Desk):
         return Resource(found.read_bytes(), "text/html", sandbox=True)
 
     def close(self) -> None:
-        """Stop an evaluation that runs."""
         if self._job is not None:
             self._job.cancel()
 

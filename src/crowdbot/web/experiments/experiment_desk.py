@@ -66,7 +66,6 @@ class ExperimentDesk(Desk):
         self._lock = threading.RLock()
 
     def greet(self) -> dict[str, Any]:
-        """Return the state for a new window."""
         with self._lock:
             return self._state()
 
@@ -198,7 +197,6 @@ class ExperimentDesk(Desk):
             self._view.refresh()
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
-        """Return meshes of the trial that runs."""
         if self._view is None:
             raise KeyError(path)
         return self._view.resource(path, query)
@@ -221,7 +219,6 @@ class ExperimentDesk(Desk):
         return () if runner is None else tuple(runner.trials.values())
 
     def close(self) -> None:
-        """Stop a trial and close the log."""
         with self._lock:
             self._close()
 

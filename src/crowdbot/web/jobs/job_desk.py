@@ -32,7 +32,6 @@ class JobDesk(Desk):
     name: ClassVar[str] = "jobs"
 
     def greet(self) -> dict[str, Any]:
-        """Return the state for a new window."""
         return self.session.jobs.facts()
 
     @command
@@ -94,7 +93,7 @@ class JobDesk(Desk):
         return [{"name": one.relative_to(folder).as_posix(), "bytes": one.stat().st_size} for one in found]
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
-        """Return ``NUMBER/all.zip``, or a file of the results of a job, ``NUMBER/files/PATH``."""
+        # NUMBER/all.zip, or a file of the results of a job, NUMBER/files/PATH
         number, _, rest = path.partition("/")
         if not number.isdecimal() or len(number) > 9:
             raise KeyError(path)

@@ -55,7 +55,6 @@ class PredictionDesk(Desk):
         self._results = StoredResults(session.workspace)
 
     def greet(self) -> dict[str, Any]:
-        """Return the state that a new window needs."""
         return {**self.board.facts(), "run": self._run_facts(), "stored": bool(self._stored)}
 
     @command
@@ -238,7 +237,6 @@ class PredictionDesk(Desk):
         return self._setup.calibrate_command(self.board.member(key).choice)
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
-        """Return the frame of a window, the background, or a file of results."""
         if path == "window":
             return Resource(self._window(query).encode())
         if path == "background.png" and self.board.background is not None:
@@ -255,7 +253,6 @@ class PredictionDesk(Desk):
         raise KeyError(path)
 
     def close(self) -> None:
-        """End the run."""
         self.cancel()
 
     def _window(self, query: dict[str, str]) -> Any:

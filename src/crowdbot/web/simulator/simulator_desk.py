@@ -97,13 +97,11 @@ class SimulatorDesk(Desk):
         self._problem = ""
 
     def visit(self, address: Mapping[str, str]) -> None:
-        """Open the first trial, or what the address of the first window of the session names."""
         if not self._visited:
             self._visited = True
             threading.Thread(target=self._open_first, args=(address,), name="crowdbot-open", daemon=True).start()
 
     def greet(self) -> dict[str, Any]:
-        """Return what is open."""
         return {
             "status": self._status(), "source": self._source, "layers": sorted(self._layers),
             "cameras": sorted(self._cameras.chosen), "predictor": builtin_name(type(self._predictor), Predictor),
@@ -287,7 +285,6 @@ class SimulatorDesk(Desk):
         """Do nothing, to measure the latency."""
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
-        """Return a thumbnail of a trial, or meshes of the picture."""
         kind, _, name = path.partition("/")
         if kind == "thumbnail":
             name = name.removesuffix(".svg")
@@ -300,7 +297,6 @@ class SimulatorDesk(Desk):
         return result
 
     def close(self) -> None:
-        """Stop the run."""
         player, self._player = self._player, None
         if player is not None:
             player.close(WAIT)

@@ -85,11 +85,9 @@ class PointWaypoint(Waypoint):
         _check_tolerance("PointWaypoint", self.tolerance)
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
-        """Return the point for each person."""
         return np.tile([float(self.x), float(self.y)], (len(place), 1))
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return ``[N]`` whether each person is within the tolerance."""
         return _within(place, goal, self.tolerance)
 
 
@@ -109,11 +107,9 @@ class HeadingWaypoint(Waypoint):
 
     @property
     def moves(self) -> bool:
-        """Whether the goal depends on the position of the person."""
         return True
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
-        """Return a point far ahead of each person."""
         return np.asarray(place + np.array(self.ahead))
 
     @property
@@ -122,7 +118,6 @@ class HeadingWaypoint(Waypoint):
         return AHEAD * math.cos(self.heading), AHEAD * math.sin(self.heading)
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return False for all."""
         return np.zeros(len(place), dtype=np.bool_)
 
 
@@ -165,11 +160,9 @@ class PolygonZone(Waypoint):
 
     @property
     def moves(self) -> bool:
-        """Whether the goal depends on the position of the person."""
         return self.aim == "nearest"
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
-        """Return the nearest points of the zone, or random ones."""
         if self.aim == "random":
             return self.sample(luck)
         out = np.empty((len(place), 2))
@@ -177,7 +170,6 @@ class PolygonZone(Waypoint):
         return out
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return ``[N]`` whether each person is in the zone or near their goal."""
         return self.contains(place) | _within(place, goal, self.tolerance)
 
     def contains(self, place: Floats) -> Bools:

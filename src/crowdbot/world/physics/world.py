@@ -214,12 +214,10 @@ class PhysicsWorld(PlanarWorld):
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
-        """All contact events so far, ordered by start time."""
         return self._contact_tracker.contact_events
 
     @property
     def falls(self) -> tuple[Fall, ...]:
-        """Falls of people so far, ordered by start time; those that are not over, too."""
         return () if self.falling is None else self.falling.falls
 
     def limbs(self) -> LimbCapsules:
@@ -227,7 +225,6 @@ class PhysicsWorld(PlanarWorld):
         return self.people.limbs(self.scene.active[0])
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
-        """Return the pose of a sensor from the simulated frame of its link; see :class:`World`."""
         if not (spatial or mount.link):
             return super().sensor_pose(robot, mount, spatial)
         body = self.robot_body(robot)
@@ -245,7 +242,6 @@ class PhysicsWorld(PlanarWorld):
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
 
     def plane_scene(self, environment: int | None = None) -> Scene:
-        """Return the scene with the current outlines of props among the walls; see :class:`World`."""
         if self._plane is None or self._plane[0] is not self.scene:
             self._plane = (self.scene, hide_ghosts(self.scene, self.ghosts).replace(walls=self._outlines()))
         return self._plane[1]
@@ -261,7 +257,7 @@ class PhysicsWorld(PlanarWorld):
         walls: Walls | None = None,
         seed: int = 0,
     ) -> None:
-        """Start the activities of people; their bodies, robots and stage are those of the constructor."""
+        # start the activities of people; their bodies, robots and stage are those of the constructor
         self._begin_activity(activity)
 
     def pose_people(self) -> None:
@@ -279,7 +275,6 @@ class PhysicsWorld(PlanarWorld):
         )
 
     def body_scene(self, skins: int | None = None, environment: int = 0, avatars: bool = False) -> Scene:
-        """Return the scene with bodies and wall height, for range sensors; see :class:`World`."""
         scene = hide_ghosts(self.scene, self.ghosts)
         only = self.avatars.people if avatars and self.avatars is not None else None
         return scene.replace(bodies=self.bodies(skins, only), wall_height=self.stage.wall_height)
@@ -330,7 +325,6 @@ class PhysicsWorld(PlanarWorld):
         return earlier.replace(**kept), crowd.replace(**kept)
 
     def _fixed_walls(self, scene: Scene) -> Walls:
-        """Return the walls that stop people, with the outlines of fixed props."""
         return self._outlined
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
@@ -504,7 +498,7 @@ class PhysicsWorld(PlanarWorld):
         return pushed if self.falling is None else np.union1d(self.falling.wanting(), pushed)
 
     def _push_people(self, earlier: Scene, crowd: Scene) -> Scene:
-        """Return the scene unchanged: the engine applies the forces."""
+        # the engine applies the forces
         return crowd
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
@@ -537,11 +531,11 @@ class PhysicsWorld(PlanarWorld):
 
     @property
     def renderer(self) -> Renderer:
-        """Renderer of the current state with ghosts, for films; see :meth:`Renderer.render`."""
+        # renderer of the current state with ghosts, for films
         return self._shown(bool(self.rigid.ghosts))
 
     def environment_renderer(self, environment: int) -> Renderer:
-        """Return the renderer without ghosts, for cameras of :mod:`crowdbot.sensors`; see :class:`World`."""
+        # renderer without ghosts, for cameras of crowdbot.sensors
         return self._shown(False)
 
     def _shown(self, ghosts: bool) -> Renderer:
@@ -564,7 +558,7 @@ class PhysicsWorld(PlanarWorld):
         return result
 
     def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
-        """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
+        # replace the descriptions of robots: sensors, posture and latency; the stage stays.
         for agent, robot in robots.items():
             if agent not in self.drives or agent in self.robot_bodies:
                 self.robot_body(agent).robot = self._with_rider(agent, robot)
@@ -593,7 +587,6 @@ class PhysicsWorld(PlanarWorld):
         return other
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: Any = None, **how: Any) -> None:
-        """Change parameters of the running world, also which robots are ghosts; see :class:`PlanarWorld`."""
         super().reconfigure(scene, sources, seed, **how)
         if sorted(self.rigid.ghosts) != sorted(agent for agent in self.ghosts if agent in self.robot_bodies):
             self.rigid.change(ghosts=self.ghosts)
@@ -602,7 +595,6 @@ class PhysicsWorld(PlanarWorld):
     def place_robot(
         self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        """Make an agent without a body a robot; see :class:`World`."""
         place = (float(place[0]), float(place[1]), math.pi - (math.pi - float(place[2])) % (2.0 * math.pi))
         if environments:
             starts = {**self.rigid.starts, agent: RobotStart(agent, robot, *place)}
@@ -614,7 +606,6 @@ class PhysicsWorld(PlanarWorld):
         self._forget()
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        """Remove a robot and its body; see :class:`World`."""
         chosen = robot_environments(self, agent, environments)
         self.rigid.change(starts={item: start for item, start in self.rigid.starts.items() if item != agent})
         remove_robot_at(self, agent, chosen)
@@ -626,14 +617,12 @@ class PhysicsWorld(PlanarWorld):
         return [name for name in self._prop_names if name]
 
     def add_prop(self, prop: PropBody, name: str = "") -> str:
-        """Add a prop, at rest on the floor; see :class:`World`."""
         name = new_prop_name(self._prop_names, name)
         self._change_stage(dataclasses.replace(self.stage, props=(*self.stage.props, prop)))
         self._prop_names = [*self._prop_names, name]
         return name
 
     def remove_prop(self, name: str) -> None:
-        """Remove a prop; see :class:`World`."""
         names = self._prop_names
         number = prop_number(names, name)
         self._change_stage(without_prop(self.stage, number))
@@ -647,7 +636,6 @@ class PhysicsWorld(PlanarWorld):
         self._forget()
 
     def embody_person(self, agent: int, environment: int) -> None:
-        """Give a new person a body."""
         self.people.grow(self.scene.shape[1], [agent])
         if self.falling is not None:
             self.falling.grow(self.people, self.scene.shape[1])

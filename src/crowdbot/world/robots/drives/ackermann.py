@@ -78,7 +78,6 @@ class AckermannDrive(Drive):
         return np.asarray(twist.forward)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :class:`AckermannDrive`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
         now = twist.steering if isinstance(twist, SteeredTwists) else self._fitting(twist)
@@ -166,7 +165,6 @@ class TricycleDrive(Drive):
         return np.asarray(np.cos(steering) * twist.forward + np.sin(steering) * self.wheelbase * twist.turn)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :class:`TricycleDrive`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
         now = twist.steering if isinstance(twist, SteeredTwists) else self._goal(twist, np.zeros_like(twist.forward))

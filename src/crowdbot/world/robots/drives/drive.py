@@ -264,7 +264,6 @@ class DifferentialDrive(Drive):
             )
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :class:`DifferentialDrive`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
         place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
@@ -275,7 +274,6 @@ class DifferentialDrive(Drive):
         return Pose(place, heading), Twists.of_columns(columns)
 
     def move(self, robot: int, before: Scene, twist: Twists, command: Twists, dt: float, after: MovedAgents) -> Twists:
-        """Move an agent of a scene, in one kernel; see :meth:`Drive.move`."""
         if type(self).step is not DifferentialDrive.step:
             return super().move(robot, before, twist, command, dt, after)
         wanted, columns = Twists.of(command, len(before.position)), np.empty((3, len(before.position)))
@@ -312,7 +310,6 @@ class Omnidirectional(Drive):
         check_limits(self)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :class:`Omnidirectional`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
         place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
@@ -323,7 +320,6 @@ class Omnidirectional(Drive):
         return Pose(place, heading), Twists.of_columns(columns)
 
     def move(self, robot: int, before: Scene, twist: Twists, command: Twists, dt: float, after: MovedAgents) -> Twists:
-        """Move an agent of a scene, in one kernel; see :meth:`Drive.move`."""
         if type(self).step is not Omnidirectional.step:
             return super().move(robot, before, twist, command, dt, after)
         wanted, columns = Twists.of(command, len(before.position)), np.empty((3, len(before.position)))

@@ -49,7 +49,6 @@ class LeggedDrive(Drive):
         check_number("LeggedDrive", "max_side_speed", self.max_side_speed, "m/s", exclusive_min=0.0, max=self.max_speed)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :class:`LeggedDrive`."""
         check_step(dt)
         after = limit_twists(
             twist,

@@ -71,7 +71,6 @@ class VelocityServo(Drive):
         check_number("VelocityServo", "time_constant", self.time_constant, "s", exclusive_min=0.0)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :class:`VelocityServo`."""
         wanted = Twists.of(command, len(pose.heading))
         check_step(dt)
         gain = -math.expm1(-dt / self.time_constant)

@@ -118,7 +118,6 @@ class SkidSteerDrive(WheeledDrive):
 
     @property
     def matrix(self) -> Floats:
-        """Wheel speeds of the left and the right side per twist, ``[2, 3]``."""
         half = 0.5 * self.track * self.slip_factor
         return np.array([[1.0, -half, 0.0], [1.0, half, 0.0]]) / self.wheel_radius
 
@@ -194,7 +193,6 @@ class SkidSteerDrive(WheeledDrive):
         return bool((np.abs(aside + turn * ends) >= SLIDING * on_spot).all())
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later, with the lateral speed at which the base slides."""
         count = len(pose.heading)
         wanted, still = Twists.of(command, count), np.zeros(count)
         bend = np.abs(wanted.forward * np.clip(wanted.turn, -self.max_turn_rate, self.max_turn_rate))

@@ -131,7 +131,6 @@ class WheeledDrive(Drive):
         return Twist(forward, turn, left)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
-        """Return pose and twist ``dt`` [s] later; see :func:`limit_twists`."""
         check_step(dt)
         after = limit_twists(
             twist,
@@ -187,7 +186,7 @@ class MecanumDrive(WheeledDrive):
 
     @property
     def matrix(self) -> Floats:
-        """Wheel speeds per twist ``[4, 3]``: front left, front right, rear left, rear right."""
+        # wheel speeds per twist [4, 3]: front left, front right, rear left, rear right
         reach = 0.5 * (self.track + self.wheelbase)
         rows = [[1.0, -reach, -1.0], [1.0, reach, 1.0], [1.0, -reach, 1.0], [1.0, reach, -1.0]]
         return np.array(rows) / self.wheel_radius
@@ -234,7 +233,6 @@ class OmniWheelDrive(WheeledDrive):
 
     @property
     def matrix(self) -> Floats:
-        """Wheel speeds per twist ``[W, 3]``, counter-clockwise from the first wheel."""
         angles = self.first_angle + 2.0 * math.pi * np.arange(self.wheels) / self.wheels
         reach = np.full(self.wheels, self.distance)
         return np.stack([-np.sin(angles), reach, np.cos(angles)], axis=1) / self.wheel_radius
