@@ -41,7 +41,7 @@ TRIES = 50
 """Places that are tried for an obstacle before it is left out."""
 
 
-class Box(NamedTuple):
+class Rectangle(NamedTuple):
     """A rectangle with sides along x and y [cm]."""
 
     left: int
@@ -54,11 +54,11 @@ class Box(NamedTuple):
         """Width and height."""
         return self.right - self.left, self.high - self.low
 
-    def grow(self, by: int) -> Box:
+    def grow(self, by: int) -> Rectangle:
         """Return the rectangle with its sides moved outwards."""
-        return Box(self.left - by, self.low - by, self.right + by, self.high + by)
+        return Rectangle(self.left - by, self.low - by, self.right + by, self.high + by)
 
-    def meets(self, other: Box) -> bool:
+    def meets(self, other: Rectangle) -> bool:
         """Return whether two rectangles overlap."""
         return self.left < other.right and other.left < self.right and self.low < other.high and other.low < self.high
 
@@ -67,7 +67,7 @@ class Box(NamedTuple):
         return box(self.left / 100, self.low / 100, self.right / 100, self.high / 100)
 
 
-class Door(NamedTuple):
+class Gap(NamedTuple):
     """A gap in a wall across ``axis`` at ``at``, from ``begin`` to ``end`` along the wall [cm]."""
 
     axis: int
@@ -81,13 +81,13 @@ def _draw(rng: Generator, low: int, high: int) -> int:
     return int(rng.integers(low, high + 1))
 
 
-def _part(rng: Generator, room: Box, width: int, height: int) -> Box:
+def _part(rng: Generator, room: Rectangle, width: int, height: int) -> Rectangle:
     """Return a rectangle of this size at a random place of a room."""
     left, low = _draw(rng, room.left, room.right - width), _draw(rng, room.low, room.high - height)
-    return Box(left, low, left + width, low + height)
+    return Rectangle(left, low, left + width, low + height)
 
 
-def _places(room: Box, axis: int, doors: list[Door]) -> list[int]:
+def _places(room: Rectangle, axis: int, doors: list[Gap]) -> list[int]:
     """Return where a wall across an axis may divide a room: rooms are large enough, and no door is near its ends."""
     ends = (room[1 - axis], room[3 - axis])
     near = [door for door in doors if door.axis != axis and door.at in ends]
@@ -98,9 +98,9 @@ def _places(room: Box, axis: int, doors: list[Door]) -> list[int]:
     ]
 
 
-def _divide(rng: Generator, hall: Box, rooms: int, door: int) -> tuple[list[Box], list[Door], list[Wall]]:
+def _divide(rng: Generator, hall: Rectangle, rooms: int, door: int) -> tuple[list[Rectangle], list[Gap], list[Wall]]:
     """Return rooms, doors and walls of a hall; fewer rooms if they would be too small."""
-    found, doors, walls = [hall], list[Door](), list[Wall]()
+    found, doors, walls = [hall], list[Gap](), list[Wall]()
     while len(found) < rooms:
         options = [
             (room.sides[axis], k, axis, places)
@@ -115,19 +115,19 @@ def _divide(rng: Generator, hall: Box, rooms: int, door: int) -> tuple[list[Box]
         low, high = room[1 - axis], room[3 - axis]
         width = _draw(rng, door, door + 40)
         begin = _draw(rng, low + MARGIN, high - MARGIN - width)
-        doors.append(Door(axis, at, begin, begin + width))
+        doors.append(Gap(axis, at, begin, begin + width))
         for ends in ((low, begin), (begin + width, high)):
             line = [(at, end) if axis == 0 else (end, at) for end in ends]
             walls.append(Wall(Points.of([(x / 100, y / 100) for x, y in line])))
         first, second = [*room], [*room]
         first[axis + 2] = second[axis] = at
-        found += [Box(*first), Box(*second)]
+        found += [Rectangle(*first), Rectangle(*second)]
     return found, doors, walls
 
 
-def _obstacles(rng: Generator, rooms: list[Box], kept: list[Box], count: int) -> list[Box]:
+def _obstacles(rng: Generator, rooms: list[Rectangle], kept: list[Rectangle], count: int) -> list[Rectangle]:
     """Return obstacles clear of walls, of each other and of what is kept; those without a place are left out."""
-    found: list[Box] = []
+    found: list[Rectangle] = []
     for _ in range(count):
         for _ in range(TRIES):
             width, height = _draw(rng, 40, 120), _draw(rng, 40, 120)
@@ -147,10 +147,10 @@ def random_hall(
     """Return a hall drawn from a seed: rooms, doors, obstacles, flows between rooms, start and goal of the robot."""
     rng = stream(layout, "random-hall")
     whole = [_draw(rng, round(75 * side), round(100 * side)) for side in (length, width)]
-    hall = Box(0, 0, *whole)
+    hall = Rectangle(0, 0, *whole)
     parts, _, walls = _divide(rng, hall, rooms, round(100 * door))
 
-    journeys, spawners, kept = list[Journey](), list[Spawner](), list[Box]()
+    journeys, spawners, kept = list[Journey](), list[Spawner](), list[Rectangle]()
     room_for = [part.sides[0] * part.sides[1] // PERSON for part in parts]
     for k in range(flows):
         first, second = (int(i) for i in rng.permutation(len(parts))[:2]) if len(parts) > 1 else (0, 0)
