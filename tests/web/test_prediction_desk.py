@@ -60,6 +60,9 @@ def test_the_lists_are_those_of_the_command_line(desk, capsys):
         for item in tables["models"]
         for row in item["parameters"]
     )
+    contact = {"name": "contact", "label": "Contact", "kind": "number", "value": 0.25, "unit": "m"}
+    learned = [item["parameters"] for item in tables["predictors"] if item["name"] == "anchor-net"]
+    assert all(contact in rows for rows in [tables["crowd"], *learned])
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -218,6 +218,36 @@ def test_a_file_is_uploaded_and_its_time_base_corrected(tab, tmp_path):
     assert "25 frames/s" not in facts.inner_text()
 
 
+def test_the_distance_that_is_typed_keeps_predicted_people_apart(tab, tmp_path):
+    page = tab
+    rows = "".join(f"{10 * t} {p} {0.4 * t if p == 1 else 8 - 0.4 * t} {p}\n" for t in range(24) for p in (1, 2))
+    (tmp_path / "two.txt").write_text(rows)
+    page.get_by_role("button", name="Open…").click()
+    page.get_by_label("File of this computer").set_input_files(tmp_path / "two.txt")
+    expect(page.get_by_role("region", name="Recording")).to_contain_text("two.txt")
+    for contact in ("0.25", "1.5"):
+        page.get_by_role("button", name="Add sim predictor…").click()
+        dialog = page.get_by_role("dialog")
+        for label in ("Cost function", "Search (calibrator)"):
+            dialog.get_by_label(label).select_option("")
+        dialog.get_by_label("Contact [m]").fill(contact)
+        dialog.get_by_role("button", name="OK").click()
+    run(page, 2)
+    page.get_by_label("Jump to frame").fill("70")
+    page.get_by_label("Jump to frame").press("Enter")
+    expect(page.locator("canvas.scene")).to_have_attribute("data-forecasts", "2")
+    expect(page.locator("canvas.scene")).to_have_attribute("data-frame", "0")
+    near = page.evaluate(
+        """() => crowdbot.tab("prediction").store.frame.forecasts.map(({ paths: [{ people: [one, other] }] }) =>
+          Math.min(...one.points.map(([x, y], k) => Math.hypot(x - other.points[k][0], y - other.points[k][1]))))"""
+    )
+    assert near[0] < 1.2
+    assert near[1] > 1.49
+    page.get_by_role("combobox", name="Export or copy").select_option("Copy as command line")
+    lines = page.get_by_role("dialog").get_by_label("Text").input_value().splitlines()
+    assert ["--set contact=1.5" in line for line in lines] == [False, True]
+
+
 def test_a_file_is_dropped_on_the_tab(tab):
     page = tab
     rows = "".join(f"{10 * t} {p} {0.4 * t if p == 1 else 8 - 0.4 * t} {p}\n" for t in range(24) for p in (1, 2))

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import functools
-import inspect
 import math
-import re
 import types
 from pathlib import Path
 from typing import Any
@@ -150,10 +147,10 @@ def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
 
 def _part_values(part: Any, contract: type, room: types.ModuleType) -> dict[str, Any]:
     """Return the type of a drive or a sensor, and its values with their units by the names of robot.xml."""
-    from crowdbot.core import builtin_classes, builtin_name
+    from crowdbot.core import builtin_classes, builtin_name, field_units
 
     kind = type(part)
-    units = _field_units((kind, *builtin_classes(room, contract).values()))
+    units = field_units((kind, *builtin_classes(room, contract).values()))
     values = {
         field.name.replace("_", "-"): {"value": _plain(getattr(part, field.name)), "unit": units.get(field.name, "")}
         for field in dataclasses.fields(part)
@@ -167,24 +164,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     return value if value is None or isinstance(value, bool | int | float | str) else str(value)
-
-
-@functools.cache
-def _field_units(kinds: tuple[type, ...]) -> dict[str, str]:
-    """Return the units of fields from the docstrings of classes and their bases; the first that has one counts.
-
-    Many docstrings refer to another class of the contract for a field, in which the same name has the same unit.
-    """
-    field_units: dict[str, str] = {}
-    for base in dict.fromkeys(base for kind in kinds for base in kind.__mro__):
-        text = inspect.cleandoc(base.__doc__ or "") + "\n"
-        section = re.search(r"^(?:Fields|Args):\n((?: {4}.*\n|\n(?= {4}))+)", text, re.MULTILINE)
-        for line in re.split(r"\n {4}(?! )|; ", f"\n{section[1]}" if section else ""):
-            names, _, about = line.partition(": ")
-            if unit := re.search(r"\[([^\]]+)\]", about):
-                for name in names.split(", "):
-                    field_units.setdefault(name, unit[1])
-    return field_units
 
 
 def _part_line(part: dict[str, Any]) -> str:

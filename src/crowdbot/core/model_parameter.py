@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import inspect
 import math
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -274,3 +276,30 @@ class Paper:
             f"@article{{{key},\n  author = {{{self.authors}}},\n  title = {{{self.title}}},\n"
             f"  journal = {{{self.venue}}},\n  year = {{{self.year}}},\n{doi}}}"
         )
+
+
+@functools.cache
+def field_units(kinds: tuple[type, ...]) -> dict[str, str]:
+    """Return the units of fields from the docstrings of classes and their bases; the first that has one counts.
+
+    Many docstrings refer to another class of the contract for a field, in which the same name has the same unit.
+
+    >>> class Disc:
+    ...     '''A disc.
+    ...
+    ...     Fields:
+    ...         radius: size of the disc [m].
+    ...     '''
+    >>> field_units((Disc,))
+    {'radius': 'm'}
+    """
+    units: dict[str, str] = {}
+    for base in dict.fromkeys(base for kind in kinds for base in kind.__mro__):
+        text = inspect.cleandoc(base.__doc__ or "") + "\n"
+        section = re.search(r"^(?:Fields|Args):\n((?: {4}.*\n|\n(?= {4}))+)", text, re.MULTILINE)
+        for line in re.split(r"\n {4}(?! )|; ", f"\n{section[1]}" if section else ""):
+            names, _, about = line.partition(": ")
+            if unit := re.search(r"\[([^\]]+)\]", about):
+                for name in names.split(", "):
+                    units.setdefault(name, unit[1])
+    return units

@@ -10,7 +10,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from crowdbot import calibration, models, prediction
-from crowdbot.core import InputError, Parameter, builtin_classes, did_you_mean, parameters, required_fields
+from crowdbot.core import (
+    InputError,
+    Parameter,
+    builtin_classes,
+    did_you_mean,
+    field_units,
+    parameters,
+    required_fields,
+)
 from crowdbot.data import PROTOCOLS, Degradation
 
 Row = dict[str, Any]
@@ -56,7 +64,7 @@ def form_rows(cls: type) -> list[Row]:
     ('s', 'number')
     """
     table = {row.name: row for row in parameters(cls)}
-    hints = typing.get_type_hints(cls)
+    hints, units = typing.get_type_hints(cls), field_units((cls,))
     rows = []
     for field in dataclasses.fields(cls):
         if not field.init or field.default is dataclasses.MISSING:
@@ -64,7 +72,7 @@ def form_rows(cls: type) -> list[Row]:
         if field.name in table:
             rows.append(_parameter_row(table[field.name], hints[field.name] is int))
         elif field.name not in HIDDEN:
-            rows += _plain_row(field.name, field.default, hints[field.name])
+            rows += _plain_row(field.name, field.default, hints[field.name], units.get(field.name, "1"))
     return rows
 
 
@@ -93,7 +101,6 @@ def written_values(cls: type, values: Mapping[str, Any], what: str) -> dict[str,
 def scheme_tables() -> dict[str, Any]:
     """Return all lists of the dialogs, as `crowdbot list` shows them, with a form for each entry."""
     lists = {kind: _listing(kind) for kind in ("models", "goals", "costs", "searches", "predictors", "degradations")}
-    crowd = [row for row in form_rows(prediction.Simulated) if row["name"] in ("radius", "substep")]
     sampled = {name for name, kind in builtin_kinds("predictors").items() if _draws(kind)}
     for row in lists["predictors"]:
         row["samples"] = row["name"] in sampled
@@ -106,7 +113,7 @@ def scheme_tables() -> dict[str, Any]:
         kind = builtin_kinds("degradations")[row["name"]]
         row["level"], row["levels"] = kind.level, list(kind.levels)  # type: ignore[attr-defined]
     protocols = [{"name": name, "about": str(about)} for name, about in PROTOCOLS.items()]
-    return {**lists, "protocols": protocols, "crowd": crowd}
+    return {**lists, "protocols": protocols, "crowd": form_rows(prediction.Simulated)}
 
 
 def _draws(kind: type) -> bool:
@@ -137,13 +144,14 @@ def _parameter_row(row: Parameter, whole: bool) -> Row:
     return found | ({} if row.unit == "1" else {"unit": row.unit})
 
 
-def _plain_row(name: str, value: Any, hint: Any) -> list[Row]:
+def _plain_row(name: str, value: Any, hint: Any, unit: str) -> list[Row]:
     kind = {bool: "switch", int: "whole", float: "number"}.get(hint)
     if hint is str and name in CHOICES:
         return [{"name": name, "label": _label(name), "kind": "choice", "value": value, "choices": [*CHOICES[name]]}]
     if hint is str and name == "variant":
         kind = "text"
-    return [{"name": name, "label": _label(name), "kind": kind, "value": value}] if kind else []
+    row: Row = {"name": name, "label": _label(name), "kind": kind, "value": value}
+    return [row | ({} if unit == "1" else {"unit": unit})] if kind else []
 
 
 def _label(name: str) -> str:

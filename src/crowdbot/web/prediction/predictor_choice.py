@@ -11,7 +11,7 @@ from crowdbot.calibration import goal_class, resolve_search
 from crowdbot.core import InputError, did_you_mean, from_attributes, kebab_case
 from crowdbot.prediction import WEIGHTS_FIELDS, PredictorSpec, Simulated
 
-from .form_rows import builtin_kinds, written_values
+from .form_rows import builtin_kinds, form_rows, written_values
 
 MOST_SAMPLES = 100
 MOST_BUDGET = 100_000
@@ -83,7 +83,7 @@ class PredictorChoice:
                 _named(kinds, settings[part])
                 own[part] = settings[part]
         model = own.setdefault("model", "orca")
-        crowd = {key: values[key] for key in ("radius", "substep") if key in values}
+        crowd = {name: values[name] for name in _crowd_names() if name in values}
         rest = {key: value for key, value in values.items() if key not in crowd}
         found = written_values(Simulated, crowd, SIMULATED) | written_values(
             builtin_kinds("models")[model], rest, model
@@ -115,7 +115,7 @@ class PredictorChoice:
         values = dict(self.values)
         if self.predictor != SIMULATED:
             return PredictorSpec(from_attributes(builtin_kinds("predictors")[self.predictor], values))
-        own = {key: value for key, value in values.items() if key in ("radius", "substep")}
+        own = {key: value for key, value in values.items() if key in _crowd_names()}
         rest = {key: value for key, value in values.items() if key not in own}
         fields: dict[str, Any] = {"model": from_attributes(builtin_kinds("models")[str(self.model)], rest)}
         if self.calibrated:
@@ -159,6 +159,11 @@ class PredictorChoice:
         if self.search is None and given:
             raise InputError(f"{next(iter(given))} requires a search")
         return None if self.search is None else dataclasses.replace(resolve_search(self.search), **given)
+
+
+def _crowd_names() -> list[str]:
+    """Return the values of the simulated predictor itself; all others are parameters of its crowd model."""
+    return [row["name"] for row in form_rows(Simulated)]
 
 
 def _named(kind: str, name: Any) -> type:
