@@ -7,7 +7,7 @@ import pytest
 
 from crowdbot.recording import read_episode, record, replay
 from crowdbot.simulation import PushOrder
-from crowdbot.trials import load_trial
+from crowdbot.trials import load_trial, trial_groups
 from crowdbot.web.simulator import FIRST
 
 pytestmark = pytest.mark.live
@@ -230,6 +230,27 @@ def test_an_episode_is_opened_scrubbed_and_branched_and_two_windows_agree(page, 
     wait(page, f"{VIEW}.status.name?.startsWith('one-from-4s') ?? false")
     state(page, "paused")
     assert status(page, "begin") == 4.0
+
+
+def test_trials_stand_in_groups_with_pictures_of_people(page, files):
+    (files / "mine.xml").write_text('<trial name="mine" duration="9"><stage/><agent x="0" y="0" goal="4,0"/></trial>')
+    page.reload()
+    show_from_above(page)
+    trials = page.locator(".trials")
+    trials.locator("section").first.wait_for()
+    groups = [item.get_attribute("aria-label") for item in trials.locator("section").all()]
+    assert groups == ["Files of the folder", *dict.fromkeys(trial_groups().values())]
+    for name, group in [("mine.xml", groups[0]), *trial_groups().items()]:
+        row = trials.get_by_role("region", name=group).locator(f"button[data-name='{name}'] img")
+        assert row.count() == 1, name
+    for name, people in (("frontal", 1), ("crowdnav-circle-20", 20)):
+        picture = page.request.get(page.evaluate(f"document.querySelector('[data-name=\"{name}\"] img').src"))
+        assert picture.text().count("<circle") > people  # the people and the robot
+    page.get_by_label("Search trials").fill("circle")
+    shown = [one.get_attribute("aria-label") for one in trials.locator("section:visible").all()]
+    assert shown == [group for group in groups if group in ("Crowds in open places", "CrowdNav")]
+    trials.locator("button[data-name='crowdnav-circle-5']").click()
+    wait(page, f"{VIEW}.status.trial === 'crowdnav-circle-5'")
 
 
 def test_a_run_that_ends_as_its_trial_plans_is_not_called_a_timeout(page):

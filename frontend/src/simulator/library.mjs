@@ -4,10 +4,13 @@ import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 import { upload } from "../ui/upload.mjs";
 
+/** Height [px] that the heading of a group covers. */
+const HEAD = 30;
+
 export class Library {
   constructor(app) {
     this.app = app;
-    this.trials = h("ul", { class: "trials" });
+    this.trials = h("div", { class: "trials" });
     this.episodes = h("ul", { class: "episodes" });
     this.search = h("input", { type: "search", "aria-label": "Search trials", placeholder: "Search trials", oninput: () => this._filter() });
     this.file = h("input", { type: "file", accept: ".xml,.mcap", "aria-label": "Open a trial or an episode from a file", onchange: () => this._upload() });
@@ -19,7 +22,11 @@ export class Library {
 
   async load() {
     const [trials] = await Promise.all([this.app.connection.call("simulator.trials"), this.loadEpisodes()]);
-    fill(this.trials, trials.map((trial) => this._trial(trial)));
+    const groups = [...new Set(trials.map((one) => one.group))];
+    fill(this.trials, groups.map((group) => {
+      const own = trials.filter((one) => one.group === group);
+      return h("section", { "aria-label": group }, h("h3", {}, group), h("ul", {}, own.map((trial) => this._trial(trial))));
+    }));
     this._filter();
     this.mark(this._current);
   }
@@ -47,7 +54,7 @@ export class Library {
     this._current = name ?? "";
     const found = this.trials.querySelector(`button[data-name="${CSS.escape(this._current)}"]`);
     found?.setAttribute("aria-current", "true");
-    if (found) this.trials.scrollTop += found.getBoundingClientRect().top - this.trials.getBoundingClientRect().top - 4;
+    if (found) this.trials.scrollTop += found.getBoundingClientRect().top - this.trials.getBoundingClientRect().top - HEAD;
   }
 
   _trial({ name, title, parameters }) {
@@ -73,7 +80,8 @@ export class Library {
 
   _filter() {
     const words = this.search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    for (const one of this.trials.children) one.hidden = !words.every((word) => one.dataset.words.includes(word));
+    for (const one of this.trials.querySelectorAll("li")) one.hidden = !words.every((word) => one.dataset.words.includes(word));
+    for (const group of this.trials.children) group.hidden = !group.querySelector("li:not([hidden])");
   }
 
   async _upload() {

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .builtin_names import FLOWS as FLOWS
     from .builtin_names import SIZES as SIZES
     from .builtin_names import builtin_trials as builtin_trials
+    from .builtin_names import trial_groups as trial_groups
     from .builtin_names import trial_titles as trial_titles
     from .cameras.camera import OVERVIEW as OVERVIEW
     from .cameras.camera import Camera as Camera

@@ -78,6 +78,15 @@ TITLES = {
 }
 """One line about each preset, by name, in the order of the presets."""
 
+GROUPS = {
+    "frontal": "Meetings with a few people",
+    "one-way-with": "Streams in corridors",
+    "circle-crossing": "Crowds in open places",
+    "crowdnav-circle-5": "CrowdNav",
+    "challenge-alone": "CrowdBot challenge",
+}
+"""Groups of presets, by the first preset of each."""
+
 
 def builtin_trials() -> tuple[str, ...]:
     """Return the names of the built-in trials.
@@ -99,6 +108,19 @@ def trial_titles() -> dict[str, str]:
         if name not in TITLES:
             found[name] = parse_xml(file.read_bytes(), file.name).attributes.get("about", "")
     return dict(sorted(found.items()))
+
+
+def trial_groups() -> dict[str, str]:
+    """Return the group of each built-in trial, by name, group after group.
+
+    >>> trial_groups()["two-way"], list(trial_groups().values())[-1]
+    ('Streams in corridors', 'CrowdBot challenge')
+    """
+    group, found = "", dict.fromkeys((name for name in _files() if name not in TITLES), "Examples in XML")
+    for name in TITLES:
+        group = GROUPS.get(name, group)
+        found[name] = group
+    return found
 
 
 def _files() -> dict[str, Traversable]:

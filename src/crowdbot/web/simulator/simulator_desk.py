@@ -34,7 +34,16 @@ from crowdbot.simulation import (
     VelocityOrder,
     read_order,
 )
-from crowdbot.trials import RobotSpec, Trial, add_element, expand_sweeps, override_remarks, trial_remarks, trial_titles
+from crowdbot.trials import (
+    RobotSpec,
+    Trial,
+    add_element,
+    expand_sweeps,
+    override_remarks,
+    trial_groups,
+    trial_remarks,
+    trial_titles,
+)
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.scene import LAYERS, scene_resource
@@ -111,14 +120,15 @@ class SimulatorDesk(Desk):
 
     @command
     def trials(self) -> list[dict[str, Any]]:
-        """Return the built-in trials with their parameters, and the trial files of the folder."""
+        """Return the trial files of the folder, and the built-in trials by group with their parameters."""
         titles = trial_titles()
         found = [
-            {"name": name, "title": titles[name], "built_in": True, "parameters": parameter_rows(name)}
-            for name in sorted(titles, key=lambda title: (title.startswith("challenge"), title))
+            {"name": name, "group": group, "title": titles[name], "built_in": True, "parameters": parameter_rows(name)}
+            for name, group in trial_groups().items()
         ]
         own = [
-            {"name": name, "title": "", "built_in": False, "parameters": []} for name in self.session.workspace.trials()
+            {"name": name, "group": "Files of the folder", "title": "", "built_in": False, "parameters": []}
+            for name in self.session.workspace.trials()
         ]
         return own + found
 
