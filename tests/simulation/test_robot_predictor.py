@@ -168,6 +168,12 @@ def test_the_batch_is_equal_to_the_forecast_of_each_environment(name: str, sampl
         np.testing.assert_array_equal(whole.valid[k, :A], one.valid[0])
         assert not whole.valid[k, A:].any()
         np.testing.assert_array_equal(whole.weight[k, :K], one.weight[0])
+        if one.covariance is not None:
+            assert whole.covariance is not None
+            np.testing.assert_array_equal(whole.covariance[k, :T, :A], one.covariance[0])
+        if one.future_covariance is not None:
+            np.testing.assert_array_equal(whole.mixture().covariance[k, :K, :T, :A], one.mixture().covariance[0])
+            np.testing.assert_array_equal(whole.mixture().weight[k, :K, :A], one.mixture().weight[0])
 
 
 def test_a_built_in_predictor_is_called_once_for_environments_with_equally_many_rows(monkeypatch: Any) -> None:

@@ -403,10 +403,18 @@ def _predict(pasts: Sequence[Windows], predictor: Predictor, steps: int, samples
 def _join(parts: Sequence[Forecast], agents: int) -> Forecast:
     """Return forecasts as the windows of one, padded to the number of agents, futures and rows of the largest."""
     K, T = (max(part.position.shape[axis] for part in parts) for axis in (1, 2))
-    position = np.zeros((len(parts), K, T, agents, 2))
-    weight, valid = np.zeros((len(parts), K)), np.zeros((len(parts), agents), dtype=np.bool_)
-    for k, part in enumerate(parts):
-        _, futures, rows, people, _ = part.position.shape
-        position[k, :futures, :rows, : min(people, agents)] = part.position[0, :, :, :agents]
-        weight[k, :futures], valid[k, : min(people, agents)] = part.weight[0], part.valid[0, :agents]
-    return Forecast(position, weight, valid, parts[0].dt, parts[0].predictor)
+    shapes = {
+        "position": (K, T, agents, 2), "weight": (K,), "valid": (agents,), "covariance": (T, agents, 2, 2),
+        "existence": (agents,), "out_of_distribution": (agents,), "person_weight": (K, agents),
+        "future_covariance": (K, T, agents, 2, 2),
+    }  # fmt: skip
+    joined: dict[str, Any] = {}
+    for name, shape in shapes.items():
+        values = [getattr(part, name) for part in parts]
+        if any(value is None for value in values):
+            continue
+        joined[name] = np.zeros((len(parts), *shape), dtype=values[0].dtype)
+        for row, value in zip(joined[name], values, strict=True):
+            inside = value[0][tuple(map(slice, shape))]
+            row[tuple(map(slice, inside.shape))] = inside
+    return Forecast(dt=parts[0].dt, predictor=parts[0].predictor, **joined)
