@@ -84,7 +84,7 @@ def test_a_live_stream_moves_a_person_in_real_time_and_the_episode_replays(tmp_p
         while not stream.subjects():
             time.sleep(0.01)
         done = record(trial, out=tmp_path, clock=PacedClock(trial.step), sources=[capture])
-    assert done.outcome in ("timeout", "collision")
+    assert done.outcome in ("finished", "collision")  # the end of its duration is planned: no goal ends it
     episode = read_episode(tmp_path / "episode.mcap")
     orders = [order for _, order in episode.orders]
     assert len(orders) >= 25
