@@ -362,6 +362,67 @@ def test_fragments_of_a_client_are_bounded():
         reader.read(json.dumps({"op": "fragment", "id": "1", "data": inner, "num": 0, "total": 1}))
 
 
+def test_what_waits_for_a_client_is_bounded_in_bytes(graph):
+    reader, writer = client(graph), client(graph)
+    for k in range(60):
+        send(reader, op="subscribe", topic=f"/chat{k}", queue_length=1000)
+    for k in range(60):
+        send(writer, op="publish", topic=f"/chat{k}", msg={"data": "x" * 1_000_000})
+    waiting = [frame["topic"] for frame in taken(reader)]
+    assert waiting == [f"/chat{k}" for k in range(33)]  # 32 MiB of this client; what has no room then is dropped
+    assert [row.dropped for row in reader.subscriptions.values()] == [0] * 33 + [1] * 27
+    for k in range(40):
+        send(writer, op="publish", topic="/chat0", msg={"data": f"{k:02}" + "x" * 1_000_000})
+    assert [frame["msg"]["data"][:2] for frame in taken(reader)] == [f"{k:02}" for k in range(7, 40)]
+    send(writer, op="publish", topic="/chat0", msg={"data": "x" * 1_000_000})
+    send(reader, op="unsubscribe", topic="/chat0")
+    send(writer, op="publish", topic="/chat1", msg={"data": "x"})
+    assert len(taken(reader)) == 1
+
+
+def test_what_clients_leave_in_the_server_is_bounded_in_bytes(graph):
+    session = client(graph)
+    for k in range(5):
+        send(session, op="publish", topic=f"/kept{k}", msg={"data": "x" * 4_000_000}, latch=True)
+    (refused,) = taken(session)
+    assert "'/kept4': with this message, the latched messages of clients take 19.1 MiB" in refused["msg"]
+    send(session, op="publish", topic="/kept0", msg={"data": "x"}, latch=True)  # it makes room
+    send(session, op="publish", topic="/kept4", msg={"data": "x" * 4_000_000}, latch=True)
+    assert taken(session) == []
+    for k in range(6):
+        request = {"resource_string": "x" * 3_000_000}
+        send(session, op="call_service", service="/crowdbot/load_world", args=request, id=str(k))
+    (answer,) = taken(session)
+    assert (answer["id"], answer["result"]) == ("5", False)
+    assert "the calls that wait for the next step would take 17.2 MiB" in answer["values"]
+    assert len(graph.inbox.take_calls()) == 5
+    for _ in range(17):
+        order = json.dumps({"order": "add-element", "xml": f'<agent x="1" y="0"><!--{"x" * 990_000}--></agent>'})
+        send(session, op="publish", topic="/crowdbot/order", msg={"data": order})
+    (refused,) = taken(session)
+    assert "the orders that wait for the next step would take 16.1 MiB" in refused["msg"]
+    assert len(graph.inbox.take_orders()) == 16
+
+
+@pytest.mark.parametrize("name", ["id", "topic", "type", "service", "level"])
+def test_names_and_words_of_a_frame_are_short(graph, name):
+    session = client(graph)
+    frame = {"op": "subscribe", "topic": "/robot/scan"} | {name: "x" * 1001}
+    send(session, **frame)
+    (answer,) = taken(session)
+    assert answer["msg"] == f"'{name}' has 1001 characters, at most 1000 are allowed"
+    send(session, op="subscribe", topic="/robot/scan", id=[1])
+    assert "id must be a text or a number" in taken(session)[0]["msg"]
+
+
+def test_a_client_cannot_advertise_a_topic_endlessly(graph):
+    session = client(graph)
+    for k in range(1001):
+        send(session, op="advertise", topic="/chat", type="std_msgs/String", id=str(k))
+    (answer,) = taken(session)
+    assert "1000 advertisements of one topic are too many" in answer["msg"]
+
+
 def hostile_frame(rng):
     """Return a frame that a hostile client could send."""
     words = ["subscribe", "unsubscribe", "publish", "advertise", "unadvertise", "call_service", "fragment", "set_level",

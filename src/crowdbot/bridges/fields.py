@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -65,6 +66,26 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def memory_size(value: Any) -> int:
+    """Return about how much memory a message or nested mapping takes [bytes].
+
+    >>> memory_size({"data": "x" * 1000}) > 1000
+    True
+    """
+    size, rest = 0, [value]
+    while rest:
+        value = rest.pop()
+        size += value.nbytes if isinstance(value, np.ndarray) else sys.getsizeof(value)
+        if isinstance(value, Mapping):
+            rest += value.keys()
+            rest += value.values()
+        elif isinstance(value, list | tuple):
+            rest += value
+        elif hasattr(value, "__msgtype__"):
+            rest += vars(value).values()
+    return size
 
 
 def message_of(fields: Mapping[str, Any], kind: str) -> Any:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
 
+from .fields import memory_size
 from .interface import InputTopic, RobotInterface, read_stamp
 from .run_control import CommandLatency
 
@@ -69,6 +70,8 @@ class PaceRequest:
 
 MOST_ORDERS, MOST_CALLS = 2000, 200
 """Largest number of orders and of calls that wait for the next step."""
+MOST_MEMORY = 16 << 20
+"""Memory [bytes] of the orders, and of the calls, that wait for the next step."""
 
 Fields = Mapping[str, Any]
 Answer = Callable[[dict[str, Any]], None]
@@ -132,6 +135,7 @@ class Inbox:
         self._velocity: dict[str, VelocityOrder] = {}
         self._orders: deque[Order] = deque()
         self._calls: deque[ServiceCall] = deque()
+        self._order_memory = self._call_memory = 0
         self._arrivals = self._seen = 0
         self._closed = False
         self._news = threading.Condition()
@@ -171,12 +175,15 @@ class Inbox:
         known = [service.name for service in self.interface.services]
         if service not in known:
             raise InputError(f"there is no service {service!r}{did_you_mean(service, known)}")
+        memory = memory_size(request)
         with self._news:
             if self._closed:
                 raise InputError("the run has ended")
             if len(self._calls) >= MOST_CALLS:
                 raise InputError(f"{MOST_CALLS} calls wait for the simulation; wait for their responses")
+            _check_memory("calls", self._call_memory + memory, "wait for their responses, or send less in a request")
             self._calls.append(ServiceCall(service, request, answer, sender))
+            self._call_memory += memory
             self._note()
 
     def add(self, order: Order) -> None:
@@ -214,10 +221,7 @@ class Inbox:
         """Return the orders that wait, and forget them."""
         with self._news:
             orders: list[Order] = [*self._orders, *self._velocity.values()]
-            self._orders.clear()
-            self._velocity.clear()
-            self.commanded.clear()
-            self.stamped.clear()
+            self._forget_orders()
             self._taken = self._now
             return orders
 
@@ -226,6 +230,7 @@ class Inbox:
         with self._news:
             service_calls = list(self._calls)
             self._calls.clear()
+            self._call_memory = 0
             return service_calls
 
     def close(self) -> list[ServiceCall]:
@@ -238,11 +243,15 @@ class Inbox:
         """Begin another run: forget commands and orders; calls stay."""
         with self._news:
             self.interface, self.external_time, self.asked_pace.until = interface, None, 0
-            self._orders.clear()
-            self._velocity.clear()
-            self.commanded.clear()
-            self.stamped.clear()
+            self._forget_orders()
             self._now, self._taken = 0, -1
+
+    def _forget_orders(self) -> None:
+        self._orders.clear()
+        self._order_memory = 0
+        self._velocity.clear()
+        self.commanded.clear()
+        self.stamped.clear()
 
     def _is_stale(self, robot: str, stamp: int) -> bool:
         """Return whether a command answers another instant, or one that has its command."""
@@ -270,7 +279,14 @@ class Inbox:
         if len(self._orders) >= MOST_ORDERS:
             self.count.refused += 1
             raise InputError(f"{MOST_ORDERS} orders wait for the next step; send fewer")
+        memory = memory_size(vars(order))
+        try:
+            _check_memory("orders", self._order_memory + memory, "send fewer, or smaller ones")
+        except InputError:
+            self.count.refused += 1
+            raise
         self._orders.append(order)
+        self._order_memory += memory
 
     def _input(self, topic: str) -> InputTopic:
         for input_topic in self.interface.inputs:
@@ -278,3 +294,11 @@ class Inbox:
                 return input_topic
         known = [input_topic.name for input_topic in self.interface.inputs]
         raise InputError(f"{topic!r} is not an input{did_you_mean(topic, known)}; inputs are {', '.join(known)}")
+
+
+def _check_memory(what: str, memory: int, remedy: str) -> None:
+    if memory > MOST_MEMORY:
+        raise InputError(
+            f"the {what} that wait for the next step would take {memory / 2**20:.1f} MiB of memory, more than"
+            f" {MOST_MEMORY >> 20} MiB; {remedy}"
+        )

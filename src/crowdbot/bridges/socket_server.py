@@ -1,4 +1,4 @@
-"""SocketServer: WebSocket clients of a bridge, who may connect, and the newest messages for slow ones."""
+"""SocketServer: WebSocket clients of a bridge, who may connect, and what waits for slow ones."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import asyncio
 import contextlib
 import logging
 import threading
+from collections import deque
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from aiohttp import WSCloseCode, WSMsgType, web
 from aiohttp.http_exceptions import HttpProcessingError
@@ -28,6 +29,67 @@ LOG.addFilter(lambda record: not isinstance((record.exc_info or (None, None))[1]
 """What is no HTTP is answered with 400 and is no news for the console."""
 ROUND = 1 << 20
 """Size [bytes] after which a client must have read what it was sent before it is sent more."""
+MOST_WAITING = 32 << 20
+"""Largest size [bytes] of all that waits for one client: a few camera images."""
+Item = TypeVar("Item")
+
+
+class Backlog:
+    """What waits for one client, over all its queues.
+
+    Attributes:
+        size: size of what waits [bytes].
+        limit: largest size [bytes].
+    """
+
+    def __init__(self, limit: int = MOST_WAITING) -> None:
+        self.size, self.limit = 0, limit
+
+
+class MessageQueue(Generic[Item]):
+    """Messages that wait for a client. The oldest ones make room for a new one, in number and in bytes.
+
+    A message that has no room then either, since other queues of the client are full, is dropped.
+
+    Args:
+        backlog: what waits for the client, shared by its queues.
+        depth: largest number of messages.
+
+    >>> queue = MessageQueue(Backlog(limit=100), depth=2)
+    >>> [queue.append(word, size) for word, size in (("a", 10), ("b", 20), ("c", 30), ("d", 90))]
+    [0, 0, 1, 2]
+    >>> len(queue), queue.popleft()
+    (1, 'd')
+    """
+
+    def __init__(self, backlog: Backlog, depth: int) -> None:
+        self._backlog, self.depth = backlog, depth
+        self._items: deque[tuple[Item, int]] = deque()
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def append(self, item: Item, size: int) -> int:
+        """Let a message of a size [bytes] wait; return how many messages were dropped."""
+        dropped = 0
+        while self._items and (len(self._items) >= self.depth or self._backlog.size + size > self._backlog.limit):
+            self.popleft()
+            dropped += 1
+        if self._backlog.size + size > self._backlog.limit:
+            return dropped + 1
+        self._items.append((item, size))
+        self._backlog.size += size
+        return dropped
+
+    def popleft(self) -> Item:
+        """Return the oldest message, which does not wait any longer."""
+        item, size = self._items.popleft()
+        self._backlog.size -= size
+        return item
+
+    def clear(self) -> list[Item]:
+        """Return all messages, of which none waits any longer."""
+        return [self.popleft() for _ in range(len(self._items))]
 
 
 class SocketSession(Protocol):

@@ -8,14 +8,14 @@ import json
 import re
 import struct
 import uuid
-from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from crowdbot.bridges.fields import fields_of, message_of
+from crowdbot.bridges.fields import fields_of, memory_size, message_of
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import SERVICES, RobotInterface, interface_store, request_kind, response_kind
 from crowdbot.bridges.run_control import PAUSED, PLAYING
+from crowdbot.bridges.socket_server import Backlog, MessageQueue
 from crowdbot.core import InputError
 from crowdbot.messages import Messages
 from crowdbot.recording import StepMessage
@@ -200,9 +200,10 @@ class FoxgloveSession:
         self.graph, self.wake = graph, wake
         self.subscriptions: dict[int, str] = {}
         """Topics by the number that the client gives its subscription."""
-        self._waiting: dict[int, deque[StepMessage]] = {}
+        self._backlog = Backlog()
+        self._waiting: dict[int, MessageQueue[StepMessage]] = {}
         self._channels: dict[int, tuple[str, str, str]] = {}
-        self._replies: deque[str | bytes] = deque(maxlen=MOST_REPLIES)
+        self._replies = MessageQueue[str | bytes](self._backlog, MOST_REPLIES)
         self._time: int | None = None
         graph.sessions.append(self)
         for frame in (graph.server_info(), graph.advertisement([*graph.channels]), graph.service_advertisement()):
@@ -231,7 +232,8 @@ class FoxgloveSession:
 
     def reply(self, frame: Mapping[str, Any] | bytes) -> None:
         """Send a frame; the oldest are dropped if the client does not read them."""
-        self._replies.append(frame if isinstance(frame, bytes) else json.dumps(frame))
+        data = frame if isinstance(frame, bytes) else json.dumps(frame)
+        self._replies.append(data, len(data))
         self.wake()
 
     def offer(self, message: StepMessage) -> None:
@@ -241,25 +243,25 @@ class FoxgloveSession:
             self.wake()
         for number, topic in self.subscriptions.items():
             if topic == message.topic:
-                self._waiting[number].append(message)
+                self._waiting[number].append(message, memory_size(message.content))
                 self.wake()
 
     def take(self) -> tuple[list[str | bytes], float | None]:
         """Return the frames that wait."""
-        frames = [*self._replies]
-        self._replies.clear()
+        frames = self._replies.clear()
         if self._time is not None:
             frames.append(struct.pack("<BQ", TIME, self._time))
             self._time = None
         for number, waiting in self._waiting.items():
-            frames += [struct.pack("<BIQ", MESSAGE, number, item.nanoseconds) + item.cdr for item in waiting]
-            waiting.clear()
+            head = (MESSAGE, number)
+            frames += [struct.pack("<BIQ", *head, item.nanoseconds) + item.cdr for item in waiting.clear()]
         return frames, None
 
     def forget(self, topics: Sequence[str]) -> None:
         """End the subscriptions of topics that are no more."""
         for number in [number for number, topic in self.subscriptions.items() if topic in topics]:
-            del self.subscriptions[number], self._waiting[number]
+            del self.subscriptions[number]
+            self._waiting.pop(number).clear()
 
     def close(self) -> None:
         """Forget the client."""
@@ -290,14 +292,14 @@ class FoxgloveSession:
             raise InputError(f"{MOST_ROWS} subscriptions are too many")
         output = self.graph.outputs[topic]
         depth = 1 if output.rate or output.quality.latched else EVENTS
-        self.subscriptions[number], self._waiting[number] = topic, deque(maxlen=depth)
+        self.subscriptions[number], self._waiting[number] = topic, MessageQueue(self._backlog, depth)
         if topic in self.graph.latched:
             self.offer(self.graph.latched[topic])
 
     def _unsubscribe(self, number: Any) -> None:
         if self.subscriptions.pop(_number(number), None) is None:
             raise InputError(f"there is no subscription {number}")
-        del self._waiting[number]
+        self._waiting.pop(_number(number)).clear()
 
     def _advertise(self, row: Mapping[str, Any]) -> None:
         number, topic, encoding, kind = (row[name] for name in ("id", "topic", "encoding", "schemaName"))

@@ -8,12 +8,13 @@ import io
 import json
 import math
 import struct
+import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
-from crowdbot.bridges.fields import fields_of, plain_fields
+from crowdbot.bridges.fields import fields_of, memory_size, plain_fields
 from crowdbot.bridges.socket_server import MOST_TEXT
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
@@ -22,6 +23,8 @@ DEEPEST = 40
 """Largest depth of a frame."""
 MOST_PARTS, MOST_MESSAGES = 10_000, 16
 """Largest number of fragments of a message, and of messages in fragments."""
+PAYLOADS, LONGEST_WORD = ("data", "msg", "args", "values"), 1000
+"""Members of a frame that may be long, and the largest number of characters of the others: names and words."""
 MISSING = object()
 
 
@@ -86,6 +89,11 @@ class FrameReader:
             raise InputError(f"a frame is not JSON: {str(error)[:100]}") from None
         if not isinstance(frame, dict) or not isinstance(frame.get("op"), str):
             raise InputError('a frame must be a JSON object with "op"')
+        for name, value in frame.items():
+            if name not in PAYLOADS and isinstance(value, str) and len(value) > LONGEST_WORD:
+                raise InputError(f"{name[:40]!r} has {len(value)} characters, at most {LONGEST_WORD} are allowed")
+        if not isinstance(frame.get("id"), str | int | None):
+            raise InputError("id must be a text or a number")
         if _is_deep(frame):
             raise InputError(f"a frame is deeper than {DEEPEST}")
         return frame
@@ -220,6 +228,7 @@ class OutgoingMessage:
         plain: returns the fields for JSON.
         rich: returns the fields with NumPy arrays, for CBOR.
         cdr: returns the CDR bytes, for ``cbor-raw``; None: not available.
+        memory: returns about how much memory the message takes [bytes]; None: that of the fields.
 
     >>> message = OutgoingMessage("/chat", "std_msgs/msg/String", 0, lambda: {"data": "hi"})
     >>> message.frames("none", None, "1")
@@ -234,9 +243,11 @@ class OutgoingMessage:
         plain: Callable[[], Any],
         rich: Callable[[], Any] | None = None,
         cdr: Callable[[], bytes] | None = None,
+        memory: Callable[[], int] | None = None,
     ) -> None:
         self.topic, self.kind, self.nanoseconds = topic, kind, nanoseconds
         self._plain, self._rich, self._cdr = plain, rich or plain, cdr
+        self._memory = memory or (lambda: memory_size(self._rich()))
 
     @classmethod
     def of(cls, step: StepMessage) -> OutgoingMessage:
@@ -248,7 +259,21 @@ class OutgoingMessage:
             lambda: plain_fields(step.message),
             lambda: fields_of(step.message),
             lambda: step.cdr,
+            lambda: memory_size(step.content),
         )
+
+    @classmethod
+    def relayed(cls, topic: str, kind: str, nanoseconds: int, fields: Any) -> OutgoingMessage:
+        """Return a message of another client, kept as text: its objects take up to 20 times as much memory."""
+        row = {"op": "publish", "topic": topic, "msg": fields}
+        try:
+            text, finite = dump_json(row), True
+        except ValueError:  # with NaN, which only CBOR can tell
+            text, finite = json.dumps(row), False
+        message = cls(topic, kind, nanoseconds, lambda: json.loads(text)["msg"], memory=lambda: sys.getsizeof(text))
+        if finite:
+            message._json = text
+        return message
 
     def frames(self, compression: str, fragment_size: int | None, number: str) -> list[str | bytes]:
         """Return the WebSocket frames: text, or bytes for CBOR.
@@ -264,6 +289,11 @@ class OutgoingMessage:
             return [self._cbor_raw]
         text = self._png if compression == "png" else self._json
         return list(fragments(text, fragment_size, number))
+
+    @functools.cached_property
+    def memory(self) -> int:
+        """About how much memory the message takes [bytes], without its frames."""
+        return self._memory()
 
     @functools.cached_property
     def _json(self) -> str:

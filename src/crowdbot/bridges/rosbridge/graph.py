@@ -58,6 +58,8 @@ class Peer(Protocol):
 NODE = "/crowdbot"
 """Name of the simulation as a node."""
 MOST_TOPICS = 1000
+MOST_LATCHED = 16 << 20
+"""Memory [bytes] of the latched messages of all clients."""
 EVENTS = 100
 """Number of messages that wait for a client on a topic of events."""
 
@@ -135,8 +137,17 @@ class RosGraph:
         if topic not in self.advertised:
             self.advertise(sender, topic, "", latch)
         kind = self.advertised[topic].get(sender, "")
-        message = OutgoingMessage(topic, kind, self.now, lambda: fields)
+        message = OutgoingMessage.relayed(topic, kind, self.now, fields)
         if latch or topic in self._latching:
+            others = sum(
+                item.memory for name, item in self.latched.items() if name in self.advertised and name != topic
+            )
+            if others + message.memory > MOST_LATCHED:
+                raise InputError(
+                    f"{topic!r}: with this message, the latched messages of clients take"
+                    f" {(others + message.memory) / 2**20:.1f} MiB, more than {MOST_LATCHED >> 20} MiB;"
+                    " unadvertise other latched topics"
+                )
             self.latched[topic] = message
         for session in self.sessions:
             session.offer(message)
@@ -535,7 +546,7 @@ class CallRelay:
         if len(self._asked) >= MOST_CALLS:
             raise InputError("too many calls wait for the client that offers it")
         number = f"{asked['op']}:{next(self._numbers)}"
-        self._asked[number] = (caller, asked)
+        self._asked[number] = (caller, {key: value for key, value in asked.items() if key != "args"})
         self.session.reply({**sent, "id": number})
 
     def cancel(self, caller: Peer, name: str, action: str) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from crowdbot.bridges.socket_server import Backlog, MessageQueue
 from crowdbot.core import InputError
 
 from .frames import COMPRESSIONS, FrameReader, OutgoingMessage, dump_json, field, fragments, png_frame
@@ -25,6 +27,7 @@ class Subscription:
     Args:
         topic: name of the topic.
         depth: number of messages that wait if the client asks for no queue.
+        backlog: what waits for the client in all its queues.
 
     >>> newest = Subscription("/chat", 1)
     >>> newest.add("a", {"op": "subscribe", "throttle_rate": 100})
@@ -34,13 +37,13 @@ class Subscription:
     (['{"op":"publish","topic":"/chat","msg":{"data":"two"}}'], 5.1)
     """
 
-    def __init__(self, topic: str, depth: int = 1) -> None:
+    def __init__(self, topic: str, depth: int = 1, backlog: Backlog | None = None) -> None:
         self.topic, self.depth, self.kind = topic, depth, ""
         self.due = 0.0
         """Real time [s] before which nothing is sent."""
         self.dropped = 0
         self._asked: dict[str, dict[str, Any]] = {}
-        self._waiting: deque[OutgoingMessage] = deque(maxlen=depth)
+        self._waiting = MessageQueue[OutgoingMessage](backlog or Backlog(), depth)
         self._interval, self._fragment, self._compression = 0.0, None, "none"
         self._number = 0
 
@@ -78,12 +81,13 @@ class Subscription:
             self._asked.pop(name, None)
         if self._asked:
             self._settle()
+        else:
+            self._waiting.clear()
         return not self._asked
 
     def offer(self, message: OutgoingMessage) -> None:
-        """Let a message wait; the oldest one is dropped if too many do."""
-        self.dropped += len(self._waiting) == self._waiting.maxlen
-        self._waiting.append(message)
+        """Let a message wait; the oldest ones are dropped if too many do, or too large ones."""
+        self.dropped += self._waiting.append(message, message.memory)
 
     def wait_time(self, now: float) -> float | None:
         """Return the time [s] until something can be sent, None if nothing waits."""
@@ -103,9 +107,7 @@ class Subscription:
         self._fragment = min(sizes) if sizes else None
         wanted = {item["compression"] for item in asked}
         self._compression = next(name for name in ("none", "png", "cbor", "cbor-raw") if name in wanted)
-        depth = max(self.depth, *(item["queue"] for item in asked)) if asked else self.depth
-        if depth != self._waiting.maxlen:
-            self._waiting = deque(self._waiting, maxlen=depth)
+        self._waiting.depth = max(self.depth, *(item["queue"] for item in asked))
 
 
 LEVELS = ("info", "warning", "error", "none")
@@ -130,7 +132,8 @@ class ClientSession:
         self.level = "error"
         self.calls = CallRelay(self, graph)
         self.errors = 0
-        self._replies: deque[str] = deque(maxlen=MOST_REPLIES)
+        self._backlog = Backlog()
+        self._replies = MessageQueue[str](self._backlog, MOST_REPLIES)
         self._reader = FrameReader()
         self._advertised: dict[str, set[str]] = {}
         self._turn: deque[str] = deque()
@@ -166,7 +169,8 @@ class ClientSession:
         """Send a frame; the oldest replies are dropped if the client does not read them."""
         text = dump_json(frame)
         text = png_frame(text) if compression == "png" else text
-        self._replies.extend(fragments(text, fragment_size, f"reply:{id(frame)}"))
+        for part in fragments(text, fragment_size, f"reply:{id(frame)}"):
+            self._replies.append(part, sys.getsizeof(part))
         self.wake()
 
     def offer(self, message: OutgoingMessage) -> None:
@@ -225,7 +229,10 @@ class ClientSession:
     def _advertise(self, frame: Frame) -> None:
         topic, kind = field(frame, "topic", str), field(frame, "type", str)
         self.graph.advertise(self, topic, kind, field(frame, "latch", bool, False))
-        self._advertised.setdefault(topic, set()).add(str(frame.get("id", "")))
+        names = self._advertised.setdefault(topic, set())
+        if len(names) >= LONGEST_QUEUE:
+            raise InputError(f"{LONGEST_QUEUE} advertisements of one topic are too many")
+        names.add(str(frame.get("id", "")))
 
     def _unadvertise(self, frame: Frame) -> None:
         topic = field(frame, "topic", str)
@@ -250,7 +257,7 @@ class ClientSession:
         if subscription is None:
             if len(self.subscriptions) >= MOST_SUBSCRIPTIONS:
                 raise InputError(f"{MOST_SUBSCRIPTIONS} subscriptions are too many")
-            subscription = Subscription(topic, self.graph.queue_depth(topic))
+            subscription = Subscription(topic, self.graph.queue_depth(topic), self._backlog)
         subscription.add(str(frame.get("id", "")), frame)
         if topic not in self.subscriptions:
             self.subscriptions[topic] = subscription
