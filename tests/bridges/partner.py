@@ -1,11 +1,13 @@
 """A robot program in a process of its own, over one of the transports; it needs nothing of crowdbot.
 
     python partner.py TRANSPORT ADDRESS drive SECONDS
+    python partner.py TRANSPORT ADDRESS faulty SEED
     python partner.py TRANSPORT ADDRESS clock SECONDS
     python partner.py TRANSPORT ADDRESS view SECONDS
 
 ``drive`` answers each tick of the clock with a velocity command, connects again when the simulation has gone, and at
-its end prints one line of JSON. ``clock`` is the time of a simulation that follows: it goes on in odd portions.
+its end prints one line of JSON. ``faulty`` answers each tick with a stamped command, and at random late, several times,
+and again what it has answered before. ``clock`` is the time of a simulation that follows: it goes on in odd portions.
 ``view`` receives scan, odometry, transforms and image, and prints the numbers of messages and bytes.
 For rospy, ADDRESS is not used and the interpreter is that of the system.
 """
@@ -15,6 +17,7 @@ import itertools
 import json
 import os
 import queue
+import random
 import signal
 import socket
 import struct
@@ -42,6 +45,10 @@ def command_of(nanoseconds):
 def twist_of(nanoseconds):
     forward, turn = command_of(nanoseconds)
     return {"linear": {"x": forward}, "angular": {"z": turn}}
+
+
+def stamped_twist_of(nanoseconds):
+    return {"header": {"stamp": stamp_of(nanoseconds)}, "twist": twist_of(nanoseconds)}
 
 
 def stamp_of(nanoseconds):
@@ -100,6 +107,9 @@ class RosbridgeLink(SocketLink):
     def drive(self, nanoseconds):
         self.send(json.dumps({"op": "publish", "topic": "/robot/cmd_vel", "msg": twist_of(nanoseconds)}))
 
+    def answer(self, nanoseconds):
+        self.send(json.dumps({"op": "publish", "topic": "/robot/cmd_vel", "msg": stamped_twist_of(nanoseconds)}))
+
     def set_time(self, nanoseconds):
         self.send(json.dumps({"op": "publish", "topic": "/clock", "msg": {"clock": stamp_of(nanoseconds)}}))
 
@@ -108,7 +118,11 @@ class FoxgloveLink(SocketLink):
     protocols = ("foxglove.sdk.v1",)
 
     def begin(self):
-        kinds = (("/robot/cmd_vel", "geometry_msgs/Twist"), ("/clock", "rosgraph_msgs/Clock"))
+        kinds = (
+            ("/robot/cmd_vel", "geometry_msgs/Twist"),
+            ("/clock", "rosgraph_msgs/Clock"),
+            ("/robot/cmd_vel", "geometry_msgs/TwistStamped"),
+        )
         rows = [
             {"id": k, "topic": item, "encoding": "json", "schemaName": kind} for k, (item, kind) in enumerate(kinds)
         ]
@@ -119,6 +133,9 @@ class FoxgloveLink(SocketLink):
 
     def drive(self, nanoseconds):
         self.send(struct.pack("<BI", 1, 0) + json.dumps(twist_of(nanoseconds)).encode())
+
+    def answer(self, nanoseconds):
+        self.send(struct.pack("<BI", 1, 2) + json.dumps(stamped_twist_of(nanoseconds)).encode())
 
     def set_time(self, nanoseconds):
         self.send(struct.pack("<BI", 1, 1) + json.dumps({"clock": stamp_of(nanoseconds)}).encode())
@@ -168,14 +185,15 @@ class TcpLink:
 class Ros2Link:
     def __init__(self, address):
         import rclpy
-        from geometry_msgs.msg import Twist
+        from geometry_msgs.msg import Twist, TwistStamped
         from rclpy.signals import SignalHandlerOptions
         from rosgraph_msgs.msg import Clock
 
         rclpy.init(domain_id=int(address), signal_handler_options=SignalHandlerOptions.NO)  # drive() has a handler
         self._ros, self._twist, self._time, self._ticks = rclpy, Twist, Clock, queue.SimpleQueue()
         self._node = rclpy.create_node("partner")
-        self._out = self._node.create_publisher(Twist, "/robot/cmd_vel", 100)
+        self._stamped = TwistStamped
+        self._out = self._node.create_publisher(TwistStamped if "faulty" in sys.argv else Twist, "/robot/cmd_vel", 100)
         if "clock" in sys.argv:
             self._clock = self._node.create_publisher(Clock, "/clock", 100)
         else:
@@ -207,6 +225,12 @@ class Ros2Link:
         command.linear.x, command.angular.z = command_of(nanoseconds)
         self._out.publish(command)
 
+    def answer(self, nanoseconds):
+        command = self._stamped()
+        command.header.stamp.sec, command.header.stamp.nanosec = nanoseconds // 10**9, nanoseconds % 10**9
+        command.twist.linear.x, command.twist.angular.z = command_of(nanoseconds)
+        self._out.publish(command)
+
     def set_time(self, nanoseconds):
         now = self._time()
         now.clock.sec, now.clock.nanosec = nanoseconds // 10**9, nanoseconds % 10**9
@@ -223,12 +247,13 @@ class Ros2Link:
 class Ros1Link:
     def __init__(self, address):
         import rospy
-        from geometry_msgs.msg import Twist
+        from geometry_msgs.msg import Twist, TwistStamped
         from rosgraph_msgs.msg import Clock
 
         rospy.init_node("partner", anonymous=True, disable_signals=True)
         self._ros, self._twist, self._time, self._ticks = rospy, Twist, Clock, queue.Queue()
-        self._out = rospy.Publisher("/robot/cmd_vel", Twist, queue_size=100)
+        self._stamped = TwistStamped
+        self._out = rospy.Publisher("/robot/cmd_vel", TwistStamped if "faulty" in sys.argv else Twist, queue_size=100)
         if "clock" in sys.argv:
             self._clock = rospy.Publisher("/clock", Clock, queue_size=100)
         else:
@@ -252,6 +277,12 @@ class Ros1Link:
     def drive(self, nanoseconds):
         command = self._twist()
         command.linear.x, command.angular.z = command_of(nanoseconds)
+        self._out.publish(command)
+
+    def answer(self, nanoseconds):
+        command = self._stamped()
+        command.header.stamp = self._ros.Time(nanoseconds // 10**9, nanoseconds % 10**9)
+        command.twist.linear.x, command.twist.angular.z = command_of(nanoseconds)
         self._out.publish(command)
 
     def set_time(self, nanoseconds):
@@ -352,6 +383,28 @@ def drive(kind, address, seconds):
     return seen
 
 
+def answer_badly(kind, address, seed):
+    """Answer each tick late, several times, and with old answers between, until SIGTERM, or the simulation has gone."""
+    rng, link, answered, sent, stop = random.Random(seed), kind(address), [], 0, []
+    signal.signal(signal.SIGTERM, lambda *_: stop.append(1))
+    print("ready", flush=True)
+    with contextlib.suppress(GoneError):
+        while not stop:
+            now = link.tick(0.1)
+            if now is None:
+                continue
+            time.sleep(rng.choice((0.0, 0.0, 0.002, 0.02)))
+            answers = [now] * (rng.randint(1, 3) if now else 1)  # without a stamp, a copy cannot be told apart
+            answers += rng.sample(answered, min(len(answered), rng.randint(0, 3)))
+            rng.shuffle(answers)
+            for nanoseconds in answers:
+                link.answer(nanoseconds)
+            sent += len(answers)
+            answered += [now] * (now > 0)
+    link.close()
+    return {"sent": sent, "answered": len(set(answered))}
+
+
 def give_time(kind, address, seconds):
     """Send the time in odd portions until the simulation has gone."""
     link, now, sent = kind(address), 0, 0
@@ -374,6 +427,6 @@ if __name__ == "__main__":
     if mode == "view":
         found = view(VIEWS[name], place, float(length))
     else:
-        found = {"drive": drive, "clock": give_time}[mode](LINKS[name], place, float(length))
+        found = {"drive": drive, "clock": give_time, "faulty": answer_badly}[mode](LINKS[name], place, float(length))
     print(json.dumps(found), flush=True)
     os._exit(0)  # threads of libraries may wait forever

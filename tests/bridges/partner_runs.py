@@ -1,6 +1,6 @@
 """Runs with a robot program in a process of its own, alike for all transports.
 
-    python partner_runs.py loop|kills|deaths|server_deaths|odd|load TRANSPORT NUMBER FOLDER
+    python partner_runs.py loop|kills|deaths|server_deaths|odd|faulty|load TRANSPORT NUMBER FOLDER
 
 It prints one line of JSON; so a run can be in a network of its own.
 """
@@ -19,6 +19,7 @@ from pathlib import Path
 
 import pytest
 from bridge_runs import MemoryTransport, Running, endless_trial, wait
+from partner import stamped_twist_of
 from ros1_master import PYTHON, RosMaster
 
 from crowdbot.benchmark.speed import bridge_viewer
@@ -268,6 +269,31 @@ def odd(transport, seconds, folder):
         seen = told(process, 150.0)
     free = run_bridge(trial, [], 0, None, BridgeClock("free"))
     return {**seen, "steps": done.steps, "digest": done.digest, "free": free.digest}
+
+
+def faulty(transport, count, folder):
+    """Run in step with programs that answer late, several times and out of order; return the digests and a free one."""
+    trial, digests, stale, sent = endless_trial(1.5), [], [], []
+    for seed in range(count):
+        with Meeting(transport, folder) as meeting, Running(trial, [meeting.node], "commands") as running:
+            process = meeting.open("faulty", seed)
+            meeting.callback(process.kill)
+            done = running.end(120.0)
+            stale.append(running.run.port.inbox.count.stale)
+            running.run.port.stop()
+            process.send_signal(signal.SIGTERM)
+            sent.append(told(process, 60.0)["sent"])
+        digests.append(done.digest)
+    free = run_bridge(trial, [Answers()], 0, None, BridgeClock("free"))
+    return {"digests": digests, "free": free.digest, "sent": sent, "stale": stale}
+
+
+class Answers(MemoryTransport):
+    """The answers of a program without faults, in memory."""
+
+    def publish(self, messages):
+        for item in (message for message in messages if message.topic == "/tf"):
+            self.inbox.receive("/robot/cmd_vel", stamped_twist_of(item.nanoseconds), self.name)
 
 
 def load(transport, seconds, folder):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from partner_runs import deaths, kills, load, loop, odd, server_deaths
+from partner_runs import deaths, faulty, kills, load, loop, odd, server_deaths
 
 HERE = Path(__file__).parent
 HERE_ALONE = ("rosbridge", "foxglove", "tcp", "ros2")
@@ -13,6 +13,7 @@ HERE_ALONE = ("rosbridge", "foxglove", "tcp", "ros2")
 THIRTY, TEN_MINUTES = pytest.param(30, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)
 LOOP = pytest.mark.parametrize("seconds", [3, THIRTY, TEN_MINUTES])
 LONG_LOOP = pytest.mark.parametrize("seconds", [THIRTY, TEN_MINUTES])
+FAULTY = pytest.mark.parametrize("count", [1, pytest.param(50, marks=pytest.mark.soak)])
 KILLS = pytest.mark.parametrize(
     "count", [pytest.param(3, marks=pytest.mark.sweep), pytest.param(20, marks=pytest.mark.soak)]
 )
@@ -58,6 +59,24 @@ def test_time_in_odd_portions_over_ros1(ros1, tmp_path):
 @pytest.mark.sweep
 def test_time_in_odd_portions_over_a_server_of_others(tmp_path):
     check_odd(odd("rosbridge-client", 2, tmp_path))
+
+
+def check_faulty(count, seen):
+    assert seen["digests"] == [seen["free"]] * count
+    assert min(seen["sent"]) > 60  # more than one answer to each of the 30 instants
+    assert min(seen["stale"]) > 20
+
+
+@pytest.mark.live
+@FAULTY
+@pytest.mark.parametrize("transport", ["rosbridge", "foxglove", "ros2"])
+def test_copies_delays_and_old_answers_do_not_change_a_run_in_step(transport, count, tmp_path):
+    check_faulty(count, faulty(transport, count, tmp_path))
+
+
+@FAULTY
+def test_copies_delays_and_old_answers_over_ros1(ros1, count, tmp_path):
+    check_faulty(count, faulty("ros1", count, tmp_path))
 
 
 @pytest.mark.live
