@@ -55,6 +55,19 @@ def test_a_requirement_that_does_not_hold_gives_status_1_and_a_failure_in_junit(
     assert [cell["navigator"] for cell in result["cells"]] == ["straight", "orca"]
 
 
+def test_the_tables_come_before_the_worst_runs_are_played(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(variant: object, seed: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("crowdbot.evaluation.worst_run.simulate", interrupted)
+    assert main([*QUICK, "--out", str(tmp_path)]) == 130
+    assert "3 runs in" in capsys.readouterr().out
+    assert json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["cells"]
+    assert not (tmp_path / "report.html").exists()
+
+
 def test_json_has_all_values(capsys: pytest.CaptureFixture[str]) -> None:
     found = _json(capsys, *QUICK, "--metrics", "success-rate,p95:min-clearance", "--navigators", "orca safety=0.2")
     (cell,) = found["cells"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,7 +87,12 @@ class WorstRun(NamedTuple):
     same: bool
 
 
-def worst_runs(plan: EvaluationPlan, result: EvaluationResult, count: int = 1) -> list[WorstRun]:
+def worst_runs(
+    plan: EvaluationPlan,
+    result: EvaluationResult,
+    count: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> list[WorstRun]:
     """Return the worst runs of each cell, simulated again.
 
     See :func:`worst_rows` for their order.
@@ -95,15 +100,22 @@ def worst_runs(plan: EvaluationPlan, result: EvaluationResult, count: int = 1) -
     Args:
         plan, result: of the same evaluation.
         count: runs of each cell.
+        progress: called with the share of the runs that are done.
     """
-    found = []
-    for planned, cell in zip(plan.cells, result.cells, strict=True):
-        for row, _ in worst_rows(cell, count):
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", RunFailureWarning)
-                episode = simulate(planned.variant, row.seed)
-            found.append(WorstRun(cell, row, _drawing(episode), episode.digest == row.digest))
-    return sorted(found, key=lambda run: (not _hurts(run.row), _missed(run.row)))
+    rows = [
+        (planned, cell, row)
+        for planned, cell in zip(plan.cells, result.cells, strict=True)
+        for row, _ in worst_rows(cell, count)
+    ]
+    runs = []
+    for planned, cell, row in rows:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RunFailureWarning)
+            episode = simulate(planned.variant, row.seed)
+        runs.append(WorstRun(cell, row, _drawing(episode), episode.digest == row.digest))
+        if progress is not None:
+            progress(len(runs) / len(rows))
+    return sorted(runs, key=lambda run: (not _hurts(run.row), _missed(run.row)))
 
 
 def worst_rows(cell: CellResult, count: int = 3) -> list[tuple[RunRow, str]]:

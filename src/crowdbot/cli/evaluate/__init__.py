@@ -136,7 +136,7 @@ def _present(
     ]
     comparisons = result.compare()
     if options.out is not None:
-        _write(options, plan, result, statistics, requirements)
+        result.save(options.out / "result.json")
     if options.json:
         values = result_values(result, statistics, comparisons, verdicts, requirements)
         for row, cell in zip(values["cells"], result.cells, strict=True):
@@ -150,7 +150,9 @@ def _present(
         print_verdicts(verdicts)
         print_runs(result)
         print_worst(result, options)
-        if options.out is not None:
+    if options.out is not None:  # worst runs are simulated again, which takes as long as they took
+        _write(options, plan, result, statistics, requirements)
+        if not options.json:
             print(f"report    {options.out / 'report.html'}\nresult    {options.out / 'result.json'}")
     return 0 if all(verdict.holds for _, _, verdict in verdicts) else 1
 
@@ -165,12 +167,13 @@ def _write(
     from crowdbot.core import explain_write_errors
     from crowdbot.evaluation import junit_xml, worst_runs, write_report
 
-    result.save(options.out / "result.json")
+    with progress(options.json) as report:
+        worst = worst_runs(plan, result, options.worst, lambda share: report("worst runs", share))
     write_report(
         result,
         options.out / "report.html",
         statistics,
-        worst=worst_runs(plan, result, options.worst),
+        worst=worst,
         again=worst_lines(result, options),
         requirements=requirements,
         comparisons=result.compare(),
