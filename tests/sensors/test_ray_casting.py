@@ -11,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import Bodies, InputError, Pose, Scene, Skins, SpatialPose, stream
+from crowdbot.core.kernels import Kernel
+from crowdbot.sensors import ray_casting, skin_casting
 from crowdbot.sensors.beams import cone_directions, sort_beams, unit_vectors
 from crowdbot.sensors.ray_casting import cast_rays
 
@@ -221,6 +223,24 @@ def test_no_beam_slips_through_the_edges_of_a_closed_skin():
     hits = cast_rays(scene, pose, sort_beams(directions), 50.0, skins=True)
     assert np.all(hits.distance <= 1.0 + 1e-9)
     assert np.all(hits.hit == -4)
+
+
+def test_scans_of_one_and_of_many_environments_with_any_labels_share_compiled_kernels():
+    vertices, faces = ball((0.0, 0.0, 1.0), 1.0, 12)
+    names = vars(ray_casting) | vars(skin_casting)
+    kernels = [value for value in names.values() if isinstance(value, Kernel)]
+
+    def compiled(environments, owner):
+        skins = Skins.of(np.repeat(vertices[None], environments, axis=0), faces, owner=owner)
+        scene = Scene.of(np.full((environments, 1, 2), 50.0), bodies=Bodies.of(skins=skins))
+        pose = SpatialPose.of(np.tile([0.0, 0.0, 1.0], (environments, 1)))
+        cast_rays(scene, pose, sort_beams(AHEAD), 5.0, skins=True)
+        return {kernel.__name__: len(kernel.dispatcher.signatures) for kernel in kernels}
+
+    first = compiled(1, -1)
+    assert compiled(1, np.zeros(len(faces), dtype=int)) == first
+    many = compiled(4, -1)
+    assert {name for name, count in many.items() if count != first[name]} <= {"_shared"}  # the parallel loop itself
 
 
 def test_skins_that_are_not_there_are_asked_for_in_vain():

@@ -65,7 +65,7 @@ from .walls import Walls
 if TYPE_CHECKING:
     from .access import AccessPolicy, is_loopback
     from .compiling import notify_compiling
-    from .kernels import cache_folder, cache_root, is_cold, kernel, prange
+    from .kernels import cache_folder, cache_root, is_cold, kernel, prange, read_only
     from .markup.gltf import MOST_PARTS, MOST_TRIANGLES, GltfFile, check_gltf_table, glb_table, read_gltf, table_rows
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .markup.yaml import parse_yaml
@@ -179,6 +179,7 @@ __all__ = [
     "product",
     "read_bytes",
     "read_gltf",
+    "read_only",
     "reads_only",
     "refuse_system",
     "reject_entities",

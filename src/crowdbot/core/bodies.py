@@ -216,7 +216,7 @@ def _broadcast_field(name: str, value: ArrayLike | None, shape: tuple[int, ...],
     array = np.asarray(value, dtype=np.float64)
     array = array[None] if array.ndim == 1 + vector else array
     try:
-        return np.ascontiguousarray(np.broadcast_to(array, shape))
+        return np.array(np.broadcast_to(array, shape))
     except ValueError:
         raise InputError(f"bodies: {name} has shape {list(np.shape(value))}, it must fit {list(shape)}") from None
 
@@ -227,4 +227,4 @@ def _labels(name: str, value: ArrayLike, count: int, whose: str) -> Ints:
         raise InputError(f"{whose}: {name} has shape {list(array.shape)}, it must be one for each of {count}")
     if array.size and array.min() < -1:
         raise InputError(f"{whose}: {name} {array.min()} is below -1")
-    return np.ascontiguousarray(np.broadcast_to(array, (count,)))
+    return np.array(np.broadcast_to(array, (count,)))  # a copy: kernels are compiled anew for read-only arrays

@@ -23,6 +23,7 @@ from types import ModuleType
 from typing import Any, TypeVar, cast, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .systems import user_cache_folder
 
@@ -47,6 +48,20 @@ def kernel(function: Function | None = None, *, parallel: bool = False, inline: 
     if function is None:
         return functools.partial(Kernel, parallel=parallel, inline=inline)
     return Kernel(function, parallel=parallel, inline=inline)
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a C-contiguous view that nobody can write through.
+
+    A kernel is compiled anew for an array of another layout, and for one that cannot be written: an argument that is
+    read-only in one call is read-only in all.
+
+    >>> read_only(np.zeros((2, 3)).T).flags["WRITEABLE"]
+    False
+    """
+    view = np.ascontiguousarray(array).view()
+    view.flags.writeable = False
+    return view
 
 
 class Kernel:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import kernel
+from crowdbot.core import kernel, read_only
 from crowdbot.core.outlines import Outlines, body_gap, swept_gap, time_to_outline
 from crowdbot.typing import Bools, Floats, Ints
 
@@ -92,8 +92,8 @@ def outline_clearance(
     result = OutlineClearance(*(np.empty(active.shape) for _ in range(3)))
     jump = JUMP * np.diff(times, prepend=-math.inf)
     sizes = np.broadcast_to(radius, active.shape)
-    arrays = map(np.ascontiguousarray, (jump, position, velocity, heading, sizes, active))
-    everything: Any = (*arrays, robot, np.ascontiguousarray(outline), *result)
+    arrays = map(read_only, (jump, position, velocity, heading, sizes, active))
+    everything: Any = (*arrays, robot, read_only(outline), *result)
     _measure(*everything)
     return result
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Twist
+from crowdbot.core import Twist, read_only
 from crowdbot.typing import Floats
 
 from .observation import DriveLimits, Observation
@@ -81,7 +81,7 @@ def dynamic_window_twist(
         wall_arrays(observation.walls).segments,
         _limits(observation.limits, speed),
         *_weights(caution or STANDARD),
-        np.ascontiguousarray(observation.outline),
+        read_only(observation.outline),
         out,
     )
     return Twist(*out[0].tolist())
@@ -109,7 +109,7 @@ def dynamic_window_twists(
     choose_twists(
         asking, batch.pose, batch.twist, batch.radius, wish,
         people.position, people.velocity, people.radius, people.seen, wall_arrays(batch.walls).segments,
-        _limits(batch.limits, speed), *_weights(caution or STANDARD), np.ascontiguousarray(batch.outline), out,
+        _limits(batch.limits, speed), *_weights(caution or STANDARD), read_only(batch.outline), out,
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Paper
+from crowdbot.core import InputError, Paper, read_only
 from crowdbot.data import Forecast, Windows
 from crowdbot.typing import Floats
 
@@ -125,7 +125,7 @@ class _Filter(Predictor):
         rows, size = len(position), len(one)
         motion, surprise, spread = filter_rows(
             np.ascontiguousarray(position).reshape(rows, -1, 2), np.ascontiguousarray(present).reshape(rows, -1),
-            np.ascontiguousarray(measured).reshape(rows, -1, size, size), _step(n, dt),
+            read_only(measured).reshape(rows, -1, size, size), _step(n, dt),
             self._push**2 * _noise(n, dt), np.array(self._start),
         )  # fmt: skip
         moved = motion.reshape(*shape, n, 2)

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel, prange, storable
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel, prange, read_only, storable
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.typing import Floats
 
@@ -417,8 +417,8 @@ def cast_plane(
     step = float(angles[1] - angles[0]) if len(angles) > 1 else TURN
     place = np.ascontiguousarray(centre, dtype=np.float64)
     _scan_rows(
-        0, len(ranges), np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.heading), angles, step, place,
-        np.ascontiguousarray(radius), np.isfinite(place[..., 0]), np.ascontiguousarray(segments),
+        0, len(ranges), np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.heading), read_only(angles),
+        step, place, np.ascontiguousarray(radius), np.isfinite(place[..., 0]), read_only(segments),
         (-2.0, 0.0, range_max, 0.0), True, ranges, cosine, hit, part,
     )  # fmt: skip
     return ranges, hit

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -306,7 +307,8 @@ def _shared(
     place: Floats, rotation: Floats, shapes: RayShapes, near: Floats, face: Ints, beams: Beams, limit: float,
     distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
-    for e in prange(len(place)):
+    for k in prange(len(place)):
+        e: Any = np.int64(k)  # the index is unsigned: the call would be compiled twice
         turn = _matrix(rotation[e])
         _one(
             e, place[e], turn, shapes, near[e], face[e], beams, limit, distance[e], cos_incidence[e], normal[e],

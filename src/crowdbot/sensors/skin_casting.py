@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,7 +114,8 @@ def sort_triangles(points: Floats, tree: SkinTree) -> None:
     """Sort the triangles of people whose vertices ``[V, 3]`` are all known and that are not sorted yet."""
     for p in prange(len(tree.person)):
         if not tree.ready[p]:
-            _sort_person(p, points, tree)
+            who: Any = np.int64(p)  # the index is unsigned: the call would be compiled twice
+            _sort_person(who, points, tree)
 
 
 PAD = 4e-6
@@ -281,7 +282,8 @@ def fit_boxes(
         end = min(len(vertices), (chunk + 1) * CHUNK)
         _turn_points(chunk * CHUNK, end, vertices, place, turn, boxes.points)
     for p in prange(len(tree.person)):
-        _fit_if_seen(p, tree, active, limit, beams, boxes)
+        who: Any = np.int64(p)
+        _fit_if_seen(who, tree, active, limit, beams, boxes)
 
 
 BLOCK = 256

@@ -56,7 +56,8 @@ def find_close_bodies(position: Floats, reach: Floats, most: int, seen: Bools, a
 
 @kernel(parallel=True)
 def _sweep(position: Floats, reach: Floats, seen: Bools, asking: Bools, agent: Rows, number: Rows, fits: Bools) -> None:
-    for e in prange(len(fits)):
+    for k in prange(len(fits)):
+        e: Any = np.int64(k)  # the index is unsigned: the call would be compiled twice
         _sweep_range(e, e + 1, position, reach, seen, asking, agent, number, fits)
 
 
