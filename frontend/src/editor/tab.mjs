@@ -1,6 +1,7 @@
 // Editor tab: tools, view from above, outline, form of the chosen element, XML, problems, files.
 import { openDialog, say } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
+import { makePane } from "../ui/layout.mjs";
 import { Inspector } from "./inspector.mjs";
 import { EditorModel } from "./model.mjs";
 import { Outline } from "./outline.mjs";
@@ -40,9 +41,12 @@ class EditorTab {
     fill(
       root,
       h("div", { class: "bar" }, this.fileButtons(), this.tools(), this.grid()),
-      h("div", { class: "left" }, h("h2", {}, "Elements"), panes.outline, this.summary),
-      h("div", { class: "middle" }, h("div", { class: "view" }, canvas, this.words), h("div", { class: "below" }, this.problems, xml)),
-      h("div", { class: "right" }, h("h2", {}, "Chosen element"), panes.inspector),
+      h("div", { class: "panes" },
+        makePane("editor", "Elements", h("div", { class: "left" }, h("h2", {}, "Elements"), panes.outline, this.summary), "left"),
+        h("div", { class: "panes rows" },
+          h("div", { class: "view" }, canvas, this.words),
+          makePane("editor", "Problems and XML", h("div", { class: "below" }, this.problems, xml), "below")),
+        makePane("editor", "Chosen element", h("div", { class: "right" }, h("h2", {}, "Chosen element"), panes.inspector), "right")),
     );
   }
 

@@ -2,6 +2,7 @@
 import { copyText } from "../ui/copy.mjs";
 import { attempt } from "../ui/dialog.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
+import { makePane } from "../ui/layout.mjs";
 import { upload } from "../ui/upload.mjs";
 import { RobotField, robotFacts } from "./robot_field.mjs";
 import { makeStrips } from "./strips.mjs";
@@ -19,8 +20,8 @@ class EvaluationTab {
       h("p", {}, "Each navigator drives the robot of the chosen trials, with every seed; robots that you name take its place. The table compares success, time, clearance and comfort, with intervals; a click on a run opens it in the simulator, at the failure."),
       h("p", {}, "Choose trials and navigators on the left and press Run."),
     ));
-    root.classList.add("evaluation");
-    fill(root, this.side, this.main);
+    root.classList.add("evaluation", "panes");
+    fill(root, makePane("evaluation", "Evaluations", this.side, "left"), this.main);
     app.connection.on("evaluation.state", (state) => this.update(state));
     app.connection.on("jobs.progress", (job) => job.kind === "evaluate" && job.title === this.state?.running && this.progress(job.share));
     this.form();

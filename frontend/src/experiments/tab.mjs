@@ -1,6 +1,7 @@
 // Experiments tab: the screens for the participant, and the controls of the operator beside them.
 import { attempt, openDialog, say } from "../ui/dialog.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
+import { makePane } from "../ui/layout.mjs";
 import { pageNodes } from "./page_nodes.mjs";
 import { makeQuestions } from "./questions.mjs";
 import { Picture } from "../simulator/picture.mjs";
@@ -18,9 +19,9 @@ class ExperimentsTab {
     this.trial = new Picture(app, { select() {}, place() {} }, "experiments");
     this.screen = h("div", { class: "screen", "aria-live": "polite" });
     this.side = h("aside", { "aria-label": "Operator" });
-    root.classList.add("experiments");
+    root.classList.add("experiments", "panes");
     if (this.participant) document.body.classList.add("participant");
-    fill(root, this.screen, this.participant ? null : this.side);
+    fill(root, this.screen, this.participant ? null : makePane("experiments", "Operator", this.side, "right"));
     app.connection.on("experiments.state", (state) => this.update(state));
     app.connection.on("experiments.progress", (share) => this.progress(share));
     app.connection.draw("trial", (frame) => this.trial.take(frame), () => this.trial.visible);

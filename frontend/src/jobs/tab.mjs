@@ -2,6 +2,7 @@
 import { attempt, openDialog } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
+import { makePane } from "../ui/layout.mjs";
 import { copyText } from "../ui/copy.mjs";
 import { jobRow, units } from "./job_row.mjs";
 
@@ -12,10 +13,10 @@ class JobsTab {
     this.starters = h("div", { class: "starters" });
     this.list = h("ul", { class: "jobs-list", "aria-label": "List of jobs" });
     this.summary = h("p", { class: "note", "aria-live": "polite" });
-    root.classList.add("jobs");
+    root.classList.add("jobs", "panes");
     fill(
       root,
-      h("aside", { "aria-label": "New job" }, h("h2", {}, "New job"), this.starters, this.form),
+      makePane("jobs", "New job", h("aside", { "aria-label": "New job" }, h("h2", {}, "New job"), this.starters, this.form), "left"),
       h("div", { class: "results" }, h("h2", {}, "Jobs"), this.summary, this.list),
     );
     app.connection.on("jobs.state", (state) => this.take(state));

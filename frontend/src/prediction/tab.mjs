@@ -1,5 +1,6 @@
 // Prediction tab.
 import { h } from "../ui/dom.mjs";
+import { makePane } from "../ui/layout.mjs";
 import { makePlots } from "./plots.mjs";
 import { makePredictorPanel } from "./predictor_panel.mjs";
 import { makeRecordingPanel } from "./recording_panel.mjs";
@@ -19,11 +20,14 @@ export const prediction = {
     const scene = new PredictionScene(store);
     const transport = new Transport(store);
     scene.element.append(makeWelcome(store));
-    root.classList.add("prediction");
+    const side = (...panels) => h("div", { class: "side" }, panels);
+    root.classList.add("prediction", "panes");
     root.append(
-      h("div", { class: "side" }, makeRecordingPanel(store, root), makePredictorPanel(store), makeRunPanel(store)),
-      h("div", { class: "middle" }, makeToolbar(store, scene), scene.element, scene.summary, transport.element, makeResultsPanel(store)),
-      h("div", { class: "side" }, makePersonPanel(store), makePlots(store)),
+      ...makePane("prediction", "Recording, predictors and run", side(makeRecordingPanel(store, root), makePredictorPanel(store), makeRunPanel(store)), "left"),
+      h("div", { class: "panes rows" },
+        h("div", { class: "middle" }, makeToolbar(store, scene), scene.element, scene.summary, transport.element),
+        makePane("prediction", "Metrics", makeResultsPanel(store), "below")),
+      ...makePane("prediction", "Person and plots", side(makePersonPanel(store), makePlots(store)), "right"),
     );
     addKeys(app, store, scene, transport);
     listen(app, store);

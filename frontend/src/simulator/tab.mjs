@@ -1,6 +1,7 @@
 // Simulator tab: a trial that runs or an episode that plays, and everything that can be done with it.
 import { attempt, say } from "../ui/dialog.mjs";
 import { h } from "../ui/dom.mjs";
+import { keepOpen, makePane } from "../ui/layout.mjs";
 import { DisplayPanel } from "./display_panel.mjs";
 import { Drive } from "./drive.mjs";
 import { EpisodePanel } from "./episode_panel.mjs";
@@ -35,8 +36,12 @@ class SimulatorView {
     this.latency = null;
     this.fps = 0;
     this._make();
-    root.classList.add("simulator");
-    root.append(this.library.element, h("div", { class: "middle" }, this.tools.element, this.picture.element, this.drive.element, this.transport.element, this.line, this.summary), this.side);
+    root.classList.add("simulator", "panes");
+    root.append(
+      ...makePane("simulator", "Trials and episodes", this.library.element, "left"),
+      h("div", { class: "middle" }, this.tools.element, this.picture.element, this.drive.element, this.transport.element, this.line, this.summary),
+      ...makePane("simulator", "Inspector, display and plots", this.side, "right"),
+    );
     this._listen();
     this._keys();
     setInterval(() => this._measure(), PING);
@@ -111,7 +116,9 @@ class SimulatorView {
     this.line = h("p", { class: "status-line" });
     this.summary = h("p", { class: "summary", role: "status", "aria-label": "Summary of the picture" });
     this.side = h("aside", { class: "side", "aria-label": "Inspector, display and plots" },
-      this.episode.element, this.inspector.element, this.display.element, this.plots.element, this.values.element);
+      this.episode.element,
+      ["inspector", "display", "plots"].map((name) => keepOpen(this[name].element, `simulator/${name}`)),
+      this.values.element);
   }
 
   _listen() {

@@ -1,0 +1,126 @@
+"""Panes of every tab are resized, folded and reset, by mouse and by keyboard, and stay so over a reload."""
+
+import pytest
+from playwright.sync_api import expect
+
+pytestmark = pytest.mark.live
+
+TAB = "#tab=jobs"
+PANES = {
+    "simulator": {"Trials and episodes": "right", "Inspector, display and plots": "left"},
+    "prediction": {"Recording, predictors and run": "right", "Metrics": "up", "Person and plots": "left"},
+    "editor": {"Elements": "right", "Problems and XML": "up", "Chosen element": "left"},
+    "evaluation": {"Evaluations": "right"},
+    "experiments": {"Operator": "left"},
+    "jobs": {"New job": "right"},
+}
+"""The panes of each tab, and the way in which their dividers make them larger."""
+AHEAD = {"right": (1, 0), "left": (-1, 0), "up": (0, -1)}
+
+
+def show(page, tab):
+    page.locator(f"#tab-{tab}").click()
+    expect(page.locator(f"#panel-{tab} .divider").first).to_be_visible()
+
+
+def divider(page, title):
+    return page.get_by_role("separator", name=f"Size of {title}", exact=True)
+
+
+def button(page, word, title):
+    return page.get_by_role("button", name=f"{word} {title}", exact=True)
+
+
+def pane(page, title):
+    return page.locator(f"[id='{button(page, 'Fold', title).get_attribute('aria-controls')}']")
+
+
+def size(page, title, way):
+    """Size of a pane that is seen [px]."""
+    return pane(page, title).bounding_box()["width" if AHEAD[way][0] else "height"]
+
+
+def drag(page, title, way, by):
+    box = divider(page, title).bounding_box()
+    x, y = box["x"] + box["width"] / 2 + 0.2, box["y"] + 3.0  # above the button that folds
+    if not AHEAD[way][0]:
+        x, y = box["x"] + 3.0, box["y"] + box["height"] / 2 + 0.2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + AHEAD[way][0] * by, y + AHEAD[way][1] * by, steps=4)
+    page.mouse.up()
+
+
+def reload(page):
+    page.reload()
+    page.wait_for_selector(".connection:not(.lost):has-text('connected')")
+
+
+@pytest.mark.parametrize("tab", PANES)
+def test_panes_are_dragged_and_folded_and_stay_so(page, tab):
+    show(page, tab)
+    first = {title: size(page, title, way) for title, way in PANES[tab].items()}
+    for title, way in PANES[tab].items():
+        drag(page, title, way, 60)
+        assert size(page, title, way) == pytest.approx(first[title] + 60, abs=1.5)
+        assert float(divider(page, title).get_attribute("aria-valuenow")) == pytest.approx(first[title] + 60, abs=1.5)
+    reload(page)
+    for title, way in PANES[tab].items():
+        assert size(page, title, way) == pytest.approx(first[title] + 60, abs=1.5)
+        divider(page, title).dblclick(position={"x": 3, "y": 3})
+        assert size(page, title, way) == first[title]
+        hidden = pane(page, title)
+        button(page, "Fold", title).click()
+        expect(hidden).to_be_hidden()
+        expect(divider(page, title)).to_have_count(0)
+    reload(page)
+    for title, way in PANES[tab].items():
+        button(page, "Unfold", title).click()
+        expect(pane(page, title)).to_be_visible()
+        assert size(page, title, way) == first[title]
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_panes_work_with_the_keyboard_alone(page):
+    show(page, "prediction")
+    for title, way in PANES["prediction"].items():
+        less, more = {"right": ("ArrowLeft", "ArrowRight"), "left": ("ArrowRight", "ArrowLeft")}.get(
+            way, ("ArrowDown", "ArrowUp")
+        )
+        line = divider(page, title)
+        line.focus()
+        page.keyboard.press("Home")
+        low = size(page, title, way)
+        assert low == float(line.get_attribute("aria-valuemin")) == float(line.get_attribute("aria-valuenow"))
+        page.keyboard.press(more)
+        assert size(page, title, way) == low + 16
+        page.keyboard.press(f"Shift+{more}")
+        assert size(page, title, way) == low + 80
+        page.keyboard.press(less)
+        assert size(page, title, way) == low + 64
+        page.keyboard.press("End")
+        assert size(page, title, way) == pytest.approx(float(line.get_attribute("aria-valuemax")), abs=1.0)
+        page.keyboard.press("Home")
+        page.keyboard.press("Enter")
+        expect(button(page, "Unfold", title)).to_be_focused()
+        page.keyboard.press("Enter")
+        expect(button(page, "Fold", title)).to_be_focused()
+        assert size(page, title, way) == low
+
+
+def test_a_layout_is_that_of_its_tab_and_other_texts_in_its_place_are_no_layout(page):
+    for text in ("[", "7", "null", '{"jobs/New job": 5}', '{"jobs/New job": {"size": "9em", "folded": 1}}'):
+        page.evaluate("text => localStorage.setItem('layout', text)", text)
+        reload(page)
+        assert size(page, "New job", "right") == 320
+    button(page, "Fold", "New job").click()
+    for tab in PANES:
+        show(page, tab)
+        expect(page.locator(f"#panel-{tab} .fold[aria-expanded='false']")).to_have_count(1 if tab == "jobs" else 0)
+
+
+def test_axe_finds_nothing_in_folded_panes(page, axe):
+    show(page, "prediction")
+    for title in ("Metrics", "Person and plots"):
+        button(page, "Fold", title).click()
+    assert axe(page) == []
