@@ -1,6 +1,9 @@
 """The simulator desk: runs equal those of the command line, every change is an order that replays, episodes play."""
 
+import itertools
 import json
+import math
+import re
 import shlex
 import time
 
@@ -9,11 +12,12 @@ import pytest
 from simulator_session import ended, ready, simulator, wait_until
 
 from crowdbot.cli import main
-from crowdbot.core import InputError, TrialError
+from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, InputError, TrialError
 from crowdbot.recording import branch, read_episode, record, replay
-from crowdbot.trials import load_trial
+from crowdbot.trials import load_trial, trial_groups
 from crowdbot.web import call_command, opened_first
 from crowdbot.web.simulator.paced_loop import PacedLoop
+from crowdbot.web.simulator.trial_preview import thumbnail
 from crowdbot.web.tabs import DESKS
 
 TRIAL = "circle-crossing"
@@ -297,3 +301,23 @@ def test_thumbnails_are_pictures_of_the_trials(tmp_path):
         assert b'xmlns="http://www.w3.org/2000/svg"' in found.data
         with pytest.raises(KeyError):
             desk.resource("thumbnail/../../x.svg", {})
+
+
+@pytest.mark.parametrize("name", sorted(trial_groups()))
+def test_people_and_robots_of_a_thumbnail_are_seen_at_its_size(name):
+    text = thumbnail(name, None).decode()
+    width, height = (float(item) for item in re.search(r'viewBox="0 0 (\S+) (\S+)"', text).groups())
+    scale = min(72.0 / width, 48.0 / height)  # pixels of the list for a unit of the drawing
+    found = re.findall(r'<circle cx="(\S+)" cy="(\S+)" r="(\S+)" fill="(\S+)"', text)
+    discs = [(scale * float(x), scale * float(y), scale * float(r), color) for x, y, r, color in found]
+    people = [disc for disc in discs if disc[3] == PERSON_COLOR]
+    assert {disc[3] for disc in discs} <= {PERSON_COLOR, ROBOT_COLOR}
+    trial = load_trial(name)
+    assert len(discs) - len(people) == len(trial.robots)
+    assert bool(people) == bool(trial.agents or trial.spawners or trial.sources)
+    for x, y, radius, _ in discs:
+        assert radius > 2.0
+        assert radius < x < scale * width - radius
+        assert radius < y < scale * height - radius
+    for (x, y, radius, _), (u, v, other, _) in itertools.combinations(people, 2):
+        assert math.hypot(x - u, y - v) > 0.8 * (radius + other)  # each is told from the next one

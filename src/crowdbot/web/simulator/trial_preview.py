@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import (
-    PERSON_COLOR,
     ROBOT_COLOR,
     WALL_COLOR,
     CrowdbotError,
@@ -25,8 +24,8 @@ from crowdbot.typing import Floats
 MOST = 150
 PACE = 1.3
 """Speed [m/s] of people and robots in a preview."""
-SMALLEST = 0.012
-"""Smallest radius of a disc as a share of the size of the trial."""
+SMALLEST = 0.036
+"""Smallest radius of a disc in a thumbnail as a share of its width: 5 px across at a width of 72 px."""
 WAY = "#9aa7b5"
 """Colour of the straight line from a robot to its goal."""
 
@@ -106,24 +105,28 @@ def _is_inside(place: Floats, zone: Floats) -> bool:
 
 
 def trial_thumbnail(trial: Trial) -> str:
-    """Return an SVG drawing that can be read at a width of 70 px.
+    """Return an SVG drawing that can be read at a width of 70 px; of people that cover each other some are left out.
 
     >>> trial_thumbnail(load_trial("frontal")).count("<circle")
     2
     """
     found = trial_preview(trial)
-    left, low, right, high = found["bounds"]
-    least = SMALLEST * max(right - left, high - low)
-    ways = [
-        Path2D(np.array([(robot.x, robot.y), robot.goal.position], dtype=np.float64), WAY, 5.0)
-        for robot in trial.robots
-    ]
-    walls = [Path2D(np.asarray(ring, dtype=np.float64), WALL_COLOR, 7.0) for ring in found["walls"]]
-    discs = [
-        Disc(x, y, max(radius, 1.7 * least if robot else least), ROBOT_COLOR if robot else PERSON_COLOR)
-        for x, y, _, _, radius, robot in found["discs"]
-    ]
-    return draw_svg([*ways, *walls], discs)
+    rings = [np.asarray(ring + ring[:1] if len(ring) > 2 else ring, dtype=np.float64) for ring in found["walls"]]
+    ways = [np.array([(robot.x, robot.y), robot.goal.position], dtype=np.float64) for robot in trial.robots]
+    entering = [_disc(np.mean(source.zone, axis=0), None, 0.25, 0) for source in trial.sources]
+    corners = np.concatenate([np.reshape(found["bounds"], (2, 2)), *ways])
+    least = SMALLEST * max(np.ptp(corners, axis=0) * (1.0, 4.0 / 3.0))  # draw_svg fits into 4 : 3
+    discs: list[Disc] = []
+    for x, y, _, _, radius, robot in [*entering, *found["discs"]][::-1]:  # robots first
+        hidden = (
+            math.hypot(x - one.x, y - one.y) < (1.0 if one.color == ROBOT_COLOR else 1.7) * least for one in discs
+        )
+        if robot:
+            discs.append(Disc(x, y, max(radius, 1.3 * least), ROBOT_COLOR))
+        elif not any(hidden):
+            discs.append(Disc(x, y, max(radius, least)))
+    lines = [*(Path2D(way, WAY, 5.0) for way in ways), *(Path2D(ring, WALL_COLOR, 9.0) for ring in rings)]
+    return draw_svg(lines, discs[::-1])
 
 
 def thumbnail(name: str, file: Path | None) -> bytes:
