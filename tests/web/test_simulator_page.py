@@ -80,6 +80,16 @@ def test_a_distance_is_measured_and_a_legend_explains_the_zones_of_the_trial(pag
     wait(page, f"{VIEW}.picture.scene.state.description?.zones.some((zone) => zone.kind === 'start')")
     assert legend.get_by_role("listitem").all_inner_texts()[:2] == ["Start of people", "Goal of people"]
     assert "Portal" not in legend.inner_text()
+    picture, strip = (page.locator(f".simulator {one}").bounding_box() for one in (".picture", ".picture-legend"))
+    assert strip["y"] >= picture["y"] + picture["height"]  # it covers nothing of the picture
+    assert strip["height"] < 30
+    page.get_by_text("Legend", exact=True).click()
+    assert legend.is_hidden()
+    page.reload()
+    page.locator(".picture-legend:not([hidden]) summary").wait_for()
+    assert legend.is_hidden()
+    page.get_by_text("Legend", exact=True).click()
+    assert legend.is_visible()
     page.get_by_label("Zones").uncheck()
     wait(page, "!document.querySelector('.picture-legend').textContent.includes('Start')")
     page.get_by_role("button", name="Measure").click()

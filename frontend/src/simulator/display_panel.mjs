@@ -5,6 +5,7 @@ import { attempt } from "../ui/dialog.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { CameraPanel } from "./camera_panel.mjs";
 
+/** The panel `element`, and the `legend` that stands below the picture. */
 export class DisplayPanel {
   /** @param {() => void} looked called after another camera was chosen */
   constructor(app, picture, looked = () => {}) {
@@ -16,8 +17,8 @@ export class DisplayPanel {
     this.camera = h("select", { "aria-label": "Camera", onchange: () => this.look(this.camera.value) });
     this.boxes = h("div", { class: "choice" });
     this.predictor = h("select", { "aria-label": "Predictor of the paths", onchange: () => this._predict() });
-    this.legend = h("ul", { class: "picture-legend", "aria-label": "Legend", hidden: true });
-    picture.element.append(this.legend);
+    this.colours = h("ul", { "aria-label": "Legend" });
+    this.legend = h("details", { class: "picture-legend", open: true, hidden: true }, h("summary", {}, "Legend"), this.colours);
     this.paths = h("label", { class: "row", hidden: true }, "Predictor", this.predictor);
     app.connection.on("simulator.predictor", (name) => this.predicts(name));
     document.addEventListener("theme", () => this._explain());
@@ -72,7 +73,7 @@ export class DisplayPanel {
     rows.unshift(...own);
     this.paths.hidden = !shown.includes("paths");
     this.legend.hidden = !rows.length;
-    fill(this.legend, rows.map(({ color, text, width }) => {
+    fill(this.colours, rows.map(({ color, text, width }) => {
       const mark = h("i", { "aria-hidden": "true" });
       mark.style.background = color;
       mark.style.height = `${width}px`;

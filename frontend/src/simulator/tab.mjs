@@ -39,7 +39,8 @@ class SimulatorView {
     root.classList.add("simulator", "panes");
     root.append(
       ...makePane("simulator", "Trials and episodes", this.library.element, "left"),
-      h("div", { class: "middle" }, this.tools.element, this.picture.element, this.drive.element, this.transport.element, this.line, this.summary),
+      h("div", { class: "middle" },
+        this.tools.element, this.picture.element, keepOpen(this.display.legend, "simulator/legend"), this.drive.element, this.transport.element, this.line, this.summary),
       ...makePane("simulator", "Inspector, display and plots", this.side, "right"),
     );
     this._listen();
