@@ -1,5 +1,6 @@
 """A person's path through the simulator tab in a real browser, from an empty start."""
 
+import threading
 import time
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 from crowdbot.recording import read_episode, record, replay
 from crowdbot.simulation import PushOrder
 from crowdbot.trials import load_trial, trial_groups
-from crowdbot.web.simulator import FIRST
+from crowdbot.web.simulator import FIRST, live_run
+from crowdbot.web.simulator.trial_preview import trial_preview
 
 pytestmark = pytest.mark.live
 
@@ -92,6 +94,7 @@ def test_a_distance_is_measured_and_a_legend_explains_the_zones_of_the_trial(pag
     assert legend.is_visible()
     page.get_by_label("Zones").uncheck()
     wait(page, "!document.querySelector('.picture-legend').textContent.includes('Start')")
+    wait(page, f"{VIEW}.picture.scene.state.frame")
     page.get_by_role("button", name="Measure").click()
     box, scale = page.locator("canvas.stage").bounding_box(), page.evaluate(f"{VIEW}.picture.scene.viewpoint()[2]")
     for share in (0.3, 0.7):
@@ -161,6 +164,62 @@ def test_a_run_is_steered_saved_and_replays(page, files):
     assert len(orders) == 4
     assert PushOrder(person=6, force=150, source="app") in orders
     assert replay(saved).equal
+
+
+def test_clicks_before_the_first_picture_are_kept(page, files, monkeypatch):
+    show_from_above(page)
+    gate, inner = threading.Event(), live_run.open_run
+
+    def late(*arguments, **options):
+        assert gate.wait(180.0)
+        return inner(*arguments, **options)
+
+    def begin(name):
+        page.locator(f"button[data-name='{name}']").click()
+        wait(page, f"{VIEW}.status.trial === '{name}' && {VIEW}.status.state === 'preparing'")
+        page.locator("canvas.preview").wait_for()
+
+    def add(start, goal):
+        """Click two places of the floor [m] as the preview shows it."""
+        page.get_by_role("button", name="Add person").click()
+        for words, (x, y) in (("Click where the person starts", start), ("Click the goal of the person", goal)):
+            page.locator(".picture-note").get_by_text(words).wait_for()
+            away = x - (left + right) / 2, y - (low + high) / 2  # from the middle of the picture
+            page.mouse.click(
+                box["x"] + box["width"] / 2 + scale * away[0], box["y"] + box["height"] / 2 - scale * away[1]
+            )
+        page.get_by_text("this is done as soon as it runs").first.wait_for()
+
+    page.locator("button[data-name='circle-crossing']").wait_for()
+    monkeypatch.setattr(live_run, "open_run", late)
+    try:
+        begin("circle-crossing")
+        left, low, right, high = trial_preview(load_trial("circle-crossing"))["bounds"]
+        box = page.locator("canvas.stage").bounding_box()
+        scale = 0.92 * min(box["width"] / (right - left), box["height"] / (high - low))
+        add((-3.0, 1.0), (2.0, -2.0))
+        begin("dense-circle")  # another run
+        page.get_by_text("not done: another run was opened").wait_for()
+        begin("circle-crossing")
+        add((1.0, 3.0), (-2.0, -3.0))
+    finally:
+        gate.set()
+    wait(page, f"{VIEW}.status.values?.people === 6")
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_role("button", name="circle-crossing-seed").wait_for()
+    (order,) = [order for _, order in read_episode(next(files.glob("*.mcap"))).orders]
+    assert (order.x, order.y, order.goal_x, order.goal_y) == pytest.approx((1.0, 3.0, -2.0, -3.0), abs=0.03)
+
+
+def test_a_click_without_a_picture_is_answered(browser, serve, tmp_path):
+    page = browser.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
+    with serve(tmp_path / "files") as server:
+        page.goto(f"{server.url}#view=2d&trial=nowhere")
+        wait(page, f"{VIEW}?.status.state === 'failed'", 60)
+        page.get_by_role("button", name="Measure").click()
+        page.locator("canvas.stage").click()
+        page.get_by_text("The picture does not show the floor yet").wait_for()
+    page.close()
 
 
 def test_a_robot_is_driven_by_keys_and_the_joystick(page, files):

@@ -4,7 +4,7 @@ import { Scene3D } from "../scene3d/scene3d.mjs";
 import { Motion } from "../scene/motion.mjs";
 import { h } from "../ui/dom.mjs";
 import { say } from "../ui/dialog.mjs";
-import { drawPreview } from "./preview.mjs";
+import { drawPreview, previewFloor } from "./preview.mjs";
 
 const AWAKE = 800;
 const DRAG = 5;
@@ -30,6 +30,7 @@ export class Picture {
     this._seen = this.visible;
     this.place = h("div", { class: "stage-place" });
     this.overlay = h("canvas", { class: "preview", "aria-hidden": "true", hidden: true });
+    this._words = {};
     this.note = h("p", { class: "picture-note", role: "status" });
     this.element = h("div", { class: "picture" }, this.place, this.overlay, this.note);
     this._make(app.address.get("view") ?? "3d");
@@ -69,10 +70,12 @@ export class Picture {
     this._loading ??= this._load().catch((error) => say(error.message, "error"));
   }
 
-  /** Text over the picture. */
-  say(text) {
-    if (this.note.textContent !== text) this.note.textContent = text;
-    this.note.hidden = !text;
+  /** Text over the picture, of the "run" or of a "tool", which is more urgent. */
+  say(text, of = "run") {
+    this._words[of] = text;
+    const shown = this._words.tool || this._words.run || "";
+    if (this.note.textContent !== shown) this.note.textContent = shown;
+    this.note.hidden = !shown;
   }
 
   /** The picture as a PNG file, null while there is none. */
@@ -170,11 +173,11 @@ export class Picture {
   }
 
   _click(x, y) {
-    if (!this.scene?.state.frame) return;
-    if (this.placing) {
-      const point = this.scene.floor(x, y);
-      if (point) this.actions.place(point);
-    } else this.actions.select(this.scene.pick(x, y));
+    const frame = this.scene?.state.frame;
+    if (!this.placing) return frame && this.actions.select(this.scene.pick(x, y));
+    if (!frame && !this._preview) return say("The picture does not show the floor yet: click again when it does.");
+    const point = this._preview ? previewFloor(this.canvas, this._preview, x, y) : this.scene.floor(x, y);
+    return point ? this.actions.place(point) : say("There is no floor at this place of the picture: click on the floor.");
   }
 
   _finish() {

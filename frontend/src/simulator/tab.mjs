@@ -33,6 +33,7 @@ class SimulatorView {
     this.app = app;
     this.status = { state: "none" };
     this.source = {};
+    this._pending = []; // what is done as soon as the run is prepared
     this.latency = null;
     this.fps = 0;
     this._make();
@@ -105,7 +106,7 @@ class SimulatorView {
       drive: (kind, name) => this.drive.start(kind, name),
       values: (path) => this.values.open(path),
     });
-    this.tools = new Tools(app, { inspector: this.inspector, picture: this.picture, became: (name) => this._became(name) });
+    this.tools = new Tools(app, { inspector: this.inspector, picture: this.picture, became: (name) => this._became(name), prepared: (action) => this._whenPrepared(action) });
     this.display = new DisplayPanel(app, this.picture, () => this.link.note());
     this.link = new ViewLink(app, this.picture, {
       look: (name) => this.display.look(name),
@@ -136,6 +137,7 @@ class SimulatorView {
 
   _opened(source, status) {
     this.source = source;
+    this._drop("another run was opened");
     this.picture.forget();
     this.picture.preview(status.state === "preparing" ? source.preview ?? null : null);
     this.library.mark(source.name);
@@ -161,13 +163,28 @@ class SimulatorView {
     else if (before.state === "preparing" || status.state === "failed") this.picture.say("");
     // the recorded beginning has the same description as the run, so that nothing else asks for the people of the run
     if (before.state === "preparing" && status.state !== "preparing") this.inspector.refresh();
-    if (status.state === "failed") this.picture.preview(null);
+    if (status.state === "failed") {
+      this.picture.preview(null);
+      this._drop("the run failed");
+    } else if (status.state !== "preparing") for (const action of this._pending.splice(0)) action();
     if (status.state === "ended" && before.state !== "ended" && this.drive.subject) this.drive.forget();
     if (this._readEpisode && status.kind === "episode" && !["preparing", "failed"].includes(status.state)) {
       this._readEpisode = false;
       await attempt(() => this._showEpisode());
     }
     if (this.inspector.element.open) this.inspector.update();
+  }
+
+  /** Does something with the run, at once or as soon as it is prepared. */
+  _whenPrepared(action) {
+    if (this.status.state !== "preparing") return action();
+    this._pending.push(action);
+    return say("The simulation is being prepared; this is done as soon as it runs.");
+  }
+
+  /** Forgets what waits for a run that will not come. */
+  _drop(reason) {
+    if (this._pending.splice(0).length) say(`What waited for the simulation is not done: ${reason}.`, "error");
   }
 
   /** Writes what is open, and its time, into the address; a server that is started again opens it from there. */

@@ -14,7 +14,7 @@ const HINTS = {
 };
 
 export class Tools {
-  /** @param {{inspector, picture, became(name)}} parts */
+  /** @param {{inspector, picture, became(name), prepared(action)}} parts prepared: does it as soon as the run takes orders */
   constructor(app, parts) {
     this.app = app;
     this.parts = parts;
@@ -60,19 +60,19 @@ export class Tools {
     if (tool === "goal") return this.parts.inspector.goal(point);
     if (tool === "move") return this.parts.inspector.move(point);
     if (tool === "you") return this._become(point);
-    return this._add(tool, start, goal);
+    return this.parts.prepared(() => this._add(tool, start, goal));
   }
 
   _hint() {
     this.parts.picture.placing = this.tool !== null;
-    this.parts.picture.say(this.tool ? `${HINTS[this.tool][this.points.length]} (Escape cancels)` : "");
+    this.parts.picture.say(this.tool ? `${HINTS[this.tool][this.points.length]} (Escape cancels)` : "", "tool");
   }
 
   /** Shows the distance between two points until another tool is chosen. */
   _measure(from, to) {
     const [dx, dy] = [to.x - from.x, to.y - from.y];
     this.parts.picture.measure([from, to]);
-    this.parts.picture.say(`${Math.hypot(dx, dy).toFixed(2)} m (${dx.toFixed(2)} m in x, ${dy.toFixed(2)} m in y; Escape removes it)`);
+    this.parts.picture.say(`${Math.hypot(dx, dy).toFixed(2)} m (${dx.toFixed(2)} m in x, ${dy.toFixed(2)} m in y; Escape removes it)`, "tool");
   }
 
   _add(kind, start, goal) {
