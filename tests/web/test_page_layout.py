@@ -124,3 +124,22 @@ def test_axe_finds_nothing_in_folded_panes(page, axe):
     for title in ("Metrics", "Person and plots"):
         button(page, "Fold", title).click()
     assert axe(page) == []
+
+
+def test_tools_of_a_page_of_1280_px_leave_the_room_to_its_picture(page):
+    show(page, "simulator")
+    settings = page.get_by_role("button", name="Settings of circle-crossing")
+    trial = page.locator("button[data-name='circle-crossing']")
+    settings.wait_for()
+    assert page.locator(".simulator .tools").first.bounding_box()["height"] < 45  # one row
+    assert settings.bounding_box()["x"] >= trial.bounding_box()["x"] + trial.bounding_box()["width"]  # beside it
+    assert settings.bounding_box()["height"] < trial.bounding_box()["height"]
+    show(page, "editor")
+    assert page.locator(".editor .bar").bounding_box()["height"] < 90  # two rows
+
+
+def test_a_server_without_virtual_reality_shows_no_controls_for_it(page):
+    page.locator("#tab-vr").click()
+    expect(page.get_by_text("This server has no virtual reality.")).to_be_visible()
+    assert page.locator("#panel-vr").get_by_role("button").count() == 0
+    assert page.locator("#panel-vr").get_by_role("img").count() == 0

@@ -40,7 +40,7 @@ class EditorTab {
     root.classList.add("editor");
     fill(
       root,
-      h("div", { class: "bar" }, this.fileButtons(), this.tools(), this.grid()),
+      h("div", { class: "bar" }, this.fileButtons(), this.grid(), this.tools()),
       h("div", { class: "panes" },
         makePane("editor", "Elements", h("div", { class: "left" }, h("h2", {}, "Elements"), panes.outline, this.summary), "left"),
         h("div", { class: "panes rows" },

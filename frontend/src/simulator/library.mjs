@@ -62,7 +62,7 @@ export class Library {
     const button = h("button", { type: "button", "data-name": name, title, onclick: () => this.open(name) }, picture,
       h("span", {}, h("strong", {}, name), h("small", {}, title)));
     const more = parameters.length
-      ? h("button", { type: "button", class: "more", "aria-label": `Settings of ${name}`, onclick: () => this._settings(name, parameters) }, "Settings")
+      ? h("button", { type: "button", class: "more", title: "Settings", "aria-label": `Settings of ${name}`, onclick: () => this._settings(name, parameters) }, "…")
       : null;
     return h("li", { "data-words": `${name} ${title}`.toLowerCase() }, button, more);
   }
