@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError
+from crowdbot.core.fields import Points
 from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
 from crowdbot.simulation import Simulation, simulate, simulate_seeds
 from crowdbot.trials import PeopleBatch, PlacementPlan, Spawner, Stage, Trial, Wall, load_trial, place
-from crowdbot.trials.notation import Points
 from samples import sizes
 
 SQUARE = Points.of([(-4, -4), (4, -4), (4, 4), (-4, 4)])

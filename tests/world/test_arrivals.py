@@ -12,11 +12,11 @@ from plain_arrivals import PlainArrivals
 
 from crowdbot.core import InputError, Scene, tree
 from crowdbot.trials import Distribution
-from crowdbot.world import PeopleSource, PointWaypoint, PolygonZone, WaypointSequence, arrival_counts
+from crowdbot.world import PeopleSource, Point, WaypointSequence, Zone, arrival_counts
 from crowdbot.world.crowd.arrivals import Arrivals
 
-DOORS = [PolygonZone(((0, 0), (2, 0), (2, 2), (0, 2))), PolygonZone(((5, 0), (8, 0), (6, 3)))]
-PATH = WaypointSequence((PointWaypoint(9.0, 1.0),))
+DOORS = [Zone(((0, 0), (2, 0), (2, 2), (0, 2))), Zone(((5, 0), (8, 0), (6, 3)))]
+PATH = WaypointSequence((Point(9.0, 1.0),))
 WALLS = [[(1.0, -1.0), (1.0, 0.6)]]
 
 

@@ -17,9 +17,9 @@ from crowdbot.world import (
     JourneyAssignment,
     PeopleSource,
     PlanarWorld,
-    PolygonZone,
     Router,
     WaypointSequence,
+    Zone,
 )
 
 ROOM = [(0.0, 0.0), (0.0, 8.0), (12.0, 8.0), (12.0, 0.0)]  # clockwise: people are inside
@@ -33,8 +33,8 @@ def maze(seed, A=20, E=1, **more):
 
 
 def everything(scene, seed=0, **more):
-    far = PolygonZone(((8.4, 0.4), (11.6, 0.4), (11.6, 7.6), (8.4, 7.6)), aim="random")
-    near = PolygonZone(((0.4, 0.4), (3.6, 0.4), (3.6, 7.6), (0.4, 7.6)), aim="random")
+    far = Zone(((8.4, 0.4), (11.6, 0.4), (11.6, 7.6), (8.4, 7.6)), aim="random")
+    near = Zone(((0.4, 0.4), (3.6, 0.4), (3.6, 7.6), (0.4, 7.6)), aim="random")
     settings = {
         "router": Router.of(MAZE, 0.3),
         "contact": ContactModel(),

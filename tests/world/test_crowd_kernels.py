@@ -12,15 +12,15 @@ from crowdbot.core import Pose, Scene, stream
 from crowdbot.core.neighbors import nearest
 from crowdbot.world import (
     CrowdLimits,
-    HeadingWaypoint,
+    Direction,
     JourneyAssignment,
     Omnidirectional,
-    PointWaypoint,
-    PolygonZone,
+    Point,
     Router,
     Twists,
     VelocityServo,
     WaypointSequence,
+    Zone,
 )
 from crowdbot.world.crowd.contact import find_close_bodies
 from crowdbot.world.crowd.waypoint import PersonRandom
@@ -54,7 +54,7 @@ def test_zones_contain_what_the_even_odd_rule_says(corners: int) -> None:
     rng = stream(corners, "zones")
     for _ in range(10):
         ring = rng.uniform(-5.0, 5.0, (corners, 2))
-        zone = PolygonZone(tuple(map(tuple, ring.tolist())))
+        zone = Zone(tuple(map(tuple, ring.tolist())))
         share, k = rng.uniform(0.0, 1.0, (500, 1)), rng.integers(0, corners, 500)
         border = ring[k] * (1.0 - share) + ring[(k + 1) % corners] * share
         place = np.vstack([rng.uniform(-6.0, 6.0, (2000, 2)), border, ring])
@@ -78,7 +78,7 @@ def _crowd(seed: int, environments: int = 6, agents: int = 30) -> Scene:
 
 def test_people_leave_at_goals_and_in_zones() -> None:
     scene = _crowd(1)
-    zone = PolygonZone(((-1.0, -4.0), (3.0, -2.0), (1.0, 2.0)))
+    zone = Zone(((-1.0, -4.0), (3.0, -2.0), (1.0, 2.0)))
     away = scene.goal - scene.position
     person = scene.active & ~scene.external
     at_goal = person & (away[..., 0] ** 2 + away[..., 1] ** 2 < 4.0)
@@ -128,17 +128,17 @@ def test_drives_equal_the_formulas() -> None:
     assert np.array_equal(twist.left, now.left + y * share)
 
 
-class _Own(PointWaypoint):
+class _Own(Point):
     """A waypoint that no kernel knows."""
 
 
 def test_journeys_in_kernels_equal_journeys_group_by_group() -> None:
-    zone = PolygonZone(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
-    hall = PolygonZone(((-3.0, -3.0), (3.0, -3.0), (3.0, 3.0), (-3.0, 3.0)), aim="random")
+    zone = Zone(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
+    hall = Zone(((-3.0, -3.0), (3.0, -3.0), (3.0, 3.0), (-3.0, 3.0)), aim="random")
     paths = (
-        WaypointSequence((zone, hall, PointWaypoint(2.0, 2.0, 1.0))),
-        WaypointSequence((PointWaypoint(-1.0, 0.0, 2.0), HeadingWaypoint(0.4)), then="stay"),
-        WaypointSequence((PointWaypoint(1.0, 1.0, 1.5), zone), then="again"),
+        WaypointSequence((zone, hall, Point(2.0, 2.0, 1.0))),
+        WaypointSequence((Point(-1.0, 0.0, 2.0), Direction(0.4)), then="stay"),
+        WaypointSequence((Point(1.0, 1.0, 1.5), zone), then="again"),
     )
     scene = _crowd(5)
     seeds, ids = np.arange(6), np.tile(np.arange(30), (6, 1))

@@ -14,23 +14,23 @@ from crowdbot.core import InputError, Pose, Scene, Twist, stream
 from crowdbot.models import ORCA
 from crowdbot.world import (
     DifferentialDrive,
-    HeadingWaypoint,
+    Direction,
     JourneyAssignment,
     Omnidirectional,
     PeopleSource,
     PlanarWorld,
-    PointWaypoint,
-    PolygonZone,
+    Point,
     ReplayedPeople,
     ReplayedTrack,
     Router,
     Twists,
     VelocityServo,
     WaypointSequence,
+    Zone,
 )
 
-PATHS = tuple(WaypointSequence((PointWaypoint(x, 5.0),)) for x in (0.0, 9.0))
-DOOR = PolygonZone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
+PATHS = tuple(WaypointSequence((Point(x, 5.0),)) for x in (0.0, 9.0))
+DOOR = Zone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
 some = settings(max_examples=40, deadline=None)
 
 
@@ -47,8 +47,8 @@ def test_one_wrong_number_of_a_journey_is_refused(which: object) -> None:
 
 @pytest.mark.parametrize("heading", [math.nan, math.inf])
 def test_a_heading_must_be_finite(heading: float) -> None:
-    with pytest.raises(InputError, match="HeadingWaypoint"):
-        HeadingWaypoint(heading)
+    with pytest.raises(InputError, match="Direction"):
+        Direction(heading)
 
 
 @pytest.mark.parametrize("radius", [0.0, -0.3, math.inf, math.nan])

@@ -15,16 +15,16 @@ from crowdbot.world import (
     JourneyAssignment,
     PeopleSource,
     PlanarWorld,
-    PointWaypoint,
-    PolygonZone,
+    Point,
     Router,
     WaypointSequence,
+    Zone,
 )
 from crowdbot.world.crowd.journey import JOURNEY, STOP
 from crowdbot.world.crowd.routing import CORNER, UNPLANNED, WAY
 
-DOOR = PolygonZone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
-FAR = PolygonZone(((9.0, 0.0), (10.0, 0.0), (10.0, 4.0), (9.0, 4.0)), aim="random")
+DOOR = Zone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
+FAR = Zone(((9.0, 0.0), (10.0, 0.0), (10.0, 4.0), (9.0, 4.0)), aim="random")
 ACROSS = WaypointSequence((FAR,))
 
 
@@ -70,7 +70,7 @@ def test_people_come_regularly_at_the_rate():
 
 def test_people_come_at_random_at_the_rate():
     source = PeopleSource(
-        PolygonZone(((0, 0), (40, 0), (40, 40), (0, 40))), WaypointSequence((PointWaypoint(20.0, 20.0, 0.5),)), rate=4.0
+        Zone(((0, 0), (40, 0), (40, 40), (0, 40))), WaypointSequence((Point(20.0, 20.0, 0.5),)), rate=4.0
     )
     world = world_of(source, scene=empty(400), dt=0.5)
     times = [time for time, *_ in entries(world, 100.0)]
@@ -100,7 +100,7 @@ def test_who_comes_walks_with_a_speed_and_a_body_that_were_drawn():
 
 
 def test_nobody_comes_in_where_there_is_no_room_and_all_wait_in_order():
-    narrow = PolygonZone(((0.0, 0.0), (0.6, 0.0), (0.6, 0.6), (0.0, 0.6)))
+    narrow = Zone(((0.0, 0.0), (0.6, 0.0), (0.6, 0.6), (0.0, 0.6)))
     blocked = Scene.of(np.zeros((10, 2)) + 0.3, active=np.arange(10) == 0, external=np.arange(10) == 0)
     world = world_of(PeopleSource(narrow, ACROSS, rate=1.0, timing="regular"), scene=blocked)
     assert entries(world, 5.0) == []
@@ -166,9 +166,7 @@ def test_memories_begin_as_the_model_says():
 
 def test_sources_do_not_change_each_other_nor_the_rest_of_the_crowd():
     one = PeopleSource(DOOR, ACROSS, rate=0.3)
-    other = PeopleSource(
-        PolygonZone(((0, 50), (1, 50), (1, 54), (0, 54))), WaypointSequence((PointWaypoint(9.0, 52.0),)), rate=0.4
-    )
+    other = PeopleSource(Zone(((0, 50), (1, 50), (1, 54), (0, 54))), WaypointSequence((Point(9.0, 52.0),)), rate=0.4)
     alone = entries(world_of(one, scene=empty(30), seed=3), 20.0)
     both = entries(world_of(one, other, scene=empty(30), seed=3), 20.0)
     assert [(t, *p) for t, _, _, p in alone] == [(t, *p) for t, _, _, p in both if p[1] < 40.0]
@@ -192,7 +190,7 @@ def test_a_batch_gives_the_bytes_of_each_alone():
 def test_people_leave_at_exits_and_robots_do_not():
     places = [[0.0, 0.0], [8.0, 2.0], [8.0, 3.0]]
     scene = Scene.of(places, goal=[[0.0, 0.0], [20.0, 2.0], [8.0, 3.0]], external=[True, False, False])
-    everywhere = PolygonZone(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
+    everywhere = Zone(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
     world = PlanarWorld(scene, ORCA(), {0: DifferentialDrive()}, 0.1, exits=(FAR, everywhere))
     for _ in range(30):
         world.step({0: Twist()})

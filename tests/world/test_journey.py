@@ -11,20 +11,20 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, Scene
 from crowdbot.models import ORCA
 from crowdbot.world import (
-    HeadingWaypoint,
+    Direction,
     JourneyAssignment,
     PlanarWorld,
-    PointWaypoint,
-    PolygonZone,
+    Point,
     Router,
     WaypointSequence,
+    Zone,
 )
 from crowdbot.world.crowd.journey import STOP
 from crowdbot.world.crowd.person_random import uniform
 from crowdbot.world.crowd.waypoint import PersonRandom
 
 STAR = [(0, 0), (4, 1), (8, 0), (7, 4), (8, 8), (4, 7), (0, 8), (1, 4)]
-HALL = PolygonZone(((10.0, 0.0), (12.0, 0.0), (12.0, 4.0), (10.0, 4.0)))
+HALL = Zone(((10.0, 0.0), (12.0, 0.0), (12.0, 4.0), (10.0, 4.0)))
 NOBODY = PersonRandom(np.zeros(0, int), np.zeros(0, int))
 
 
@@ -43,7 +43,7 @@ def walk(world, seconds):
 @given(st.integers(0, 999))
 def test_the_nearest_point_of_a_zone_is_what_shapely_says(seed):
     place = np.random.default_rng(seed).uniform(-3.0, 11.0, (40, 2))
-    zone, area = PolygonZone(STAR), shapely.Polygon(STAR)
+    zone, area = Zone(STAR), shapely.Polygon(STAR)
     points = shapely.points(place)
     assert np.array_equal(zone.contains(place), shapely.contains(area, points))
     goal = zone.goal(place, NOBODY)
@@ -53,7 +53,7 @@ def test_the_nearest_point_of_a_zone_is_what_shapely_says(seed):
 
 
 def test_random_points_fill_the_zone_evenly():
-    goal = PolygonZone(STAR, aim="random").goal(np.zeros((4000, 2)), luck(4000))
+    goal = Zone(STAR, aim="random").goal(np.zeros((4000, 2)), luck(4000))
     area = shapely.Polygon(STAR)
     assert np.all(shapely.covers(area, shapely.points(goal)))
     half = area.intersection(shapely.box(0, 0, 3, 8)).area / area.area
@@ -74,7 +74,7 @@ def test_chance_follows_the_person_not_the_place():
 
 
 def test_a_chain_of_stops_is_walked_in_order_and_people_leave_or_stay():
-    stops = (PointWaypoint(4.0, 0.0), PointWaypoint(4.0, 4.0), HALL)
+    stops = (Point(4.0, 0.0), Point(4.0, 4.0), HALL)
     journeys = JourneyAssignment((WaypointSequence(stops, "leave"), WaypointSequence(stops, "stay")), which=[0, 1, -1])
     start = Scene.of([[0.0, 0.0], [0.0, 9.0], [0.0, 20.0]], goal=[[0.0, 0.0], [0.0, 0.0], [3.0, 20.0]])
     scenes = walk(PlanarWorld(start, ORCA(), {}, 0.1, journeys=journeys), 25.0)
@@ -94,13 +94,13 @@ def test_a_chain_of_stops_is_walked_in_order_and_people_leave_or_stay():
 
 
 def test_a_direction_is_walked_for_ever():
-    journeys = JourneyAssignment((WaypointSequence((HeadingWaypoint(math.pi / 2),)),))
+    journeys = JourneyAssignment((WaypointSequence((Direction(math.pi / 2),)),))
     scene = walk(PlanarWorld(Scene.of([[0.0, 0.0]]), ORCA(), {}, 0.1, journeys=journeys), 20.0)[-1]
     np.testing.assert_allclose(scene.position[0, 0], [0.0, 26.0], atol=1e-6)
 
 
 def test_random_goals_are_the_same_alone_in_a_batch_and_renumbered():
-    journeys = JourneyAssignment((WaypointSequence((PolygonZone(STAR, "random"), PointWaypoint(20.0, 0.0))),))
+    journeys = JourneyAssignment((WaypointSequence((Zone(STAR, "random"), Point(20.0, 0.0))),))
     place = np.random.default_rng(1).uniform(-9.0, -1.0, (2, 20, 2))
     batch = PlanarWorld(Scene.of(place), ORCA(), {}, 0.1, seed=5, journeys=journeys)
     alone = PlanarWorld(Scene.of(place[1]), ORCA(), {}, 0.1, seed=6, journeys=journeys)
@@ -117,7 +117,7 @@ def test_random_goals_are_the_same_alone_in_a_batch_and_renumbered():
 
 def test_random_goals_keep_clear_of_walls_when_there_is_a_router():
     pillar = [(1.0, 1.0), (7.0, 1.0), (7.0, 7.0), (1.0, 7.0)]
-    square = PolygonZone(((0, 0), (8, 0), (8, 8), (0, 8)), aim="random")
+    square = Zone(((0, 0), (8, 0), (8, 8), (0, 8)), aim="random")
     scene = Scene.of(np.random.default_rng(2).uniform(-9.0, -1.0, (60, 2)), walls=[pillar])
     world = PlanarWorld(
         scene,
@@ -134,7 +134,7 @@ def test_random_goals_keep_clear_of_walls_when_there_is_a_router():
 def test_people_reach_a_zone_behind_walls():
     screen = [(3.0, -5.0), (3.0, 5.0)]
     scene = Scene.of(np.random.default_rng(3).uniform(-3.0, 2.0, (10, 2)), walls=[screen])
-    journeys = JourneyAssignment((WaypointSequence((PolygonZone(((5, -1), (7, -1), (7, 1), (5, 1))),)),))
+    journeys = JourneyAssignment((WaypointSequence((Zone(((5, -1), (7, -1), (7, 1), (5, 1))),)),))
     world = PlanarWorld(scene, ORCA(), {}, 0.1, journeys=journeys, router=Router.of([screen], 0.3), heading_jitter=1e-3)
     assert not np.any(walk(world, 40.0)[-1].active)
     stuck = PlanarWorld(scene, ORCA(), {}, 0.1, journeys=journeys)
@@ -144,19 +144,19 @@ def test_people_reach_a_zone_behind_walls():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: PointWaypoint(math.nan, 0.0), "PointWaypoint: x = nan is not finite"),
-        (lambda: PointWaypoint(0.0, 0.0, tolerance=0.0), "PointWaypoint: tolerance 0.0 m"),
-        (lambda: HeadingWaypoint(math.inf), "HeadingWaypoint: heading = inf"),
-        (lambda: PolygonZone(((0, 0), (1, 1))), "three or more finite points"),
-        (lambda: PolygonZone(((0, 0), (1, 1), (2, 2))), "enclose 0 m2, the area must be above 0"),
-        (lambda: PolygonZone(STAR, aim="randon"), "aim 'randon' is unknown, did you mean 'random'"),
+        (lambda: Point(math.nan, 0.0), 'Point: x="nan" is not finite'),
+        (lambda: Point(0.0, 0.0, tolerance=0.0), 'Point: tolerance="0.0" must be above 0 m and at most 1000000 m'),
+        (lambda: Direction(math.inf), 'Direction: heading="inf" is not finite'),
+        (lambda: Zone(((0, 0), (1, 1))), "must be at least 3 different points"),
+        (lambda: Zone(((0, 0), (1, 1), (2, 2))).ring, "enclose 0 m2, the area must be above 0"),
+        (lambda: Zone(STAR, aim="randon"), 'aim="randon" must be nearest or random, did you mean'),
         (lambda: WaypointSequence(()), "must be one or more waypoints"),
-        (lambda: WaypointSequence((PointWaypoint(0, 0),), then="stays"), "did you mean 'stay'"),
+        (lambda: WaypointSequence((Point(0, 0),), then="stays"), "did you mean 'stay'"),
         (
-            lambda: JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0, 1]),
+            lambda: JourneyAssignment((WaypointSequence((Point(0, 0),)),), which=[0, 1]),
             "must be from 0 to 0, or -1",
         ),
-        (lambda: JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0.5]), "must be from 0 to 0"),
+        (lambda: JourneyAssignment((WaypointSequence((Point(0, 0),)),), which=[0.5]), "must be from 0 to 0"),
     ],
 )
 def test_wrong_stops_are_explained(make, message):
@@ -165,13 +165,13 @@ def test_wrong_stops_are_explained(make, message):
 
 
 def test_wrong_worlds_of_journeys_are_explained():
-    journeys = JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0, 0, 0])
+    journeys = JourneyAssignment((WaypointSequence((Point(0, 0),)),), which=[0, 0, 0])
     with pytest.raises(InputError, match=r"which has shape \[3\], expected \[1, 2\]"):
         PlanarWorld(Scene.of(np.zeros((2, 2))), ORCA(), {}, 0.1, journeys=journeys)
     given_velocity = Scene.of(np.zeros((3, 2)), preferred_velocity=np.ones((3, 2)))
     with pytest.raises(InputError, match="the scene has preferred velocities instead of goals"):
         PlanarWorld(given_velocity, ORCA(), {}, 0.1, journeys=journeys)
-    walled = PolygonZone(((1, 1), (2, 1), (2, 2), (1, 2)), aim="random")
+    walled = Zone(((1, 1), (2, 1), (2, 2), (1, 2)), aim="random")
     pillar = [(0, 0), (3, 0), (3, 3), (0, 3)]
     with pytest.raises(InputError, match="no free position for a body was found in the zone"):
         PlanarWorld(

@@ -23,12 +23,12 @@ from crowdbot.world import (
     PhysicsStage,
     PhysicsWorld,
     PlanarWorld,
-    PolygonZone,
     Robot,
     Router,
     TableBody,
     TreeBody,
     World,
+    Zone,
     builtin_robots,
 )
 from samples import sample, sizes
@@ -80,7 +80,7 @@ def test_without_a_touch_people_walk_as_in_the_plane():
     options = {
         "router": Router.of(scene.walls),
         "contact": ContactModel(),
-        "exits": [PolygonZone([(-8.0, -8.0), (-6.0, -8.0), (-6.0, 8.0), (-8.0, 8.0)])],
+        "exits": [Zone([(-8.0, -8.0), (-6.0, -8.0), (-6.0, 8.0), (-8.0, 8.0)])],
         "heading_jitter": 1e-3,
         "substeps": 2,
         "leave_radius": 0.3,
@@ -275,11 +275,11 @@ def test_a_car_is_pulled():
 def test_people_who_come_in_have_bodies():
     robot = load("turtlebot2")
     scene = Scene.of([[8.0, 8.0], *[[0.0, 0.0]] * 5], external=[True] + [False] * 5, active=[True] + [False] * 5)
-    from crowdbot.world import HeadingWaypoint, WaypointSequence
+    from crowdbot.world import Direction, WaypointSequence
 
     source = PeopleSource(
-        zone=PolygonZone([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]),
-        journey=WaypointSequence((HeadingWaypoint(0.0),)),
+        zone=Zone([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]),
+        journey=WaypointSequence((Direction(0.0),)),
         rate=2.0,
     )
     world = PhysicsWorld(

@@ -5,10 +5,10 @@ import pytest
 
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import DifferentialDrive, PlanarWorld, PolygonZone, PortalTransfer
+from crowdbot.world import DifferentialDrive, PlanarWorld, Portal
 
-RIGHT = PortalTransfer(PolygonZone(((5, -3), (8, -3), (8, 3), (5, 3))), dx=-10.0)
-LEFT = PortalTransfer(PolygonZone(((-8, -3), (-5, -3), (-5, 3), (-8, 3))), dx=10.0)
+RIGHT = Portal(zone=((5, -3), (8, -3), (8, 3), (5, 3)), dx=-10.0)
+LEFT = Portal(zone=((-8, -3), (-5, -3), (-5, 3), (-8, 3)), dx=10.0)
 
 
 def world(start, goal, **more):
@@ -92,7 +92,9 @@ def test_environments_do_not_disturb_each_other():
     assert after.position[:, 0, 0] == pytest.approx([-4.95, 0.15])
 
 
-@pytest.mark.parametrize("way", [{}, {"dx": np.inf}, {"dy": np.nan}])
-def test_a_portal_leads_elsewhere(way):
-    with pytest.raises(InputError, match="must be finite, and not both 0"):
-        PortalTransfer(RIGHT.zone, **way)
+@pytest.mark.parametrize(
+    ("way", "message"), [({}, "needs dx or dy"), ({"dx": np.inf}, "is not finite"), ({"dy": np.nan}, "is not finite")]
+)
+def test_a_portal_leads_elsewhere(way, message):
+    with pytest.raises(InputError, match=message):
+        Portal(zone=RIGHT.zone, **way)

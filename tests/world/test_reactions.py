@@ -15,11 +15,11 @@ from crowdbot.world import (
     PeopleSource,
     PhysicsWorld,
     PlanarWorld,
-    PolygonZone,
     Robot,
     RobotReaction,
     RobotReactions,
     WaypointSequence,
+    Zone,
     add_person,
     join_worlds,
     people_by_reaction,
@@ -274,8 +274,8 @@ def test_shares_are_drawn_from_seed_and_id_alone():
 
 
 def test_people_who_enter_draw_the_reactions_of_their_source():
-    door = PolygonZone(((3, -1), (4, -1), (4, 1), (3, 1)))
-    away = WaypointSequence((PolygonZone(((-9, -1), (-8, -1), (-8, 1), (-9, 1))),))
+    door = Zone(((3, -1), (4, -1), (4, 1), (3, 1)))
+    away = WaypointSequence((Zone(((-9, -1), (-8, -1), (-8, 1), (-9, 1))),))
     scene = Scene.of(np.zeros((6, 2)), active=[True] + [False] * 5, external=[True] + [False] * 5)
     sources = [PeopleSource(door, away, rate=1.0, timing="regular", max_count=3)]
     reactions = RobotReactions([[(RobotReaction("look"), 1.0)]], sources=[0])

@@ -192,8 +192,8 @@ class WorldTemplate:
             "contact": trial.contact,
             "limits": None if trial.limits is None else trial.limits.limits(),
             "sources": self._sources,
-            "exits": [way.out() for way in trial.exits],
-            "portals": [portal.gate() for portal in trial.portals],
+            "exits": trial.exits,
+            "portals": trial.portals,
             "heading_jitter": trial.heading_jitter,
             "substeps": trial.substeps,
         }

@@ -11,10 +11,12 @@ from crowdbot.lazy import lazy_exports
 
 if TYPE_CHECKING:
     from crowdbot.core.fields import UNWRITABLE as UNWRITABLE
+    from crowdbot.core.fields import Points as Points
     from crowdbot.core.fields import attribute as attribute
     from crowdbot.core.fields import check as check
     from crowdbot.core.fields import children as children
     from crowdbot.core.fields import outline as outline
+    from crowdbot.core.fields import plain as plain
     from crowdbot.core.fields import quote_value as quote_value
     from crowdbot.trials.robot import JointTarget as JointTarget
     from crowdbot.trials.robot import joint_positions as joint_positions
@@ -22,9 +24,14 @@ if TYPE_CHECKING:
     from crowdbot.trials.variants import needs_trust as needs_trust
     from crowdbot.trials.variants import remove_element as remove_element
     from crowdbot.world import Cube as Cube
+    from crowdbot.world import Direction as Direction
+    from crowdbot.world import Exit as Exit
     from crowdbot.world import Light as Light
+    from crowdbot.world import Point as Point
+    from crowdbot.world import Portal as Portal
     from crowdbot.world import Table as Table
     from crowdbot.world import Tree as Tree
+    from crowdbot.world import Zone as Zone
 
     from .agent import Agent as Agent
     from .agent import AgentParameter as AgentParameter
@@ -88,14 +95,7 @@ if TYPE_CHECKING:
     from .importers.recording import recorded_trial as recorded_trial
     from .importers.umans import import_umans as import_umans
     from .importers.vadere import import_vadere as import_vadere
-    from .journey import Direction as Direction
-    from .journey import Exit as Exit
     from .journey import Journey as Journey
-    from .journey import Point as Point
-    from .journey import Portal as Portal
-    from .journey import Zone as Zone
-    from .notation import Points as Points
-    from .notation import plain as plain
     from .parser import check_trial as check_trial
     from .parser import element_word as element_word
     from .parser import parse_trial as parse_trial

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError, UnreadableValue, find_class, sources_of
-from crowdbot.core.fields import attribute, check, children, quote_value
+from crowdbot.core.fields import NAME, Points, attribute, check, children, quote_value
 
 from .files.trial_files import read_beside, resolve_file
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
-from .notation import NAME, Points
 from .robots.reaction import ReactionSpec, check_shares
 
 if TYPE_CHECKING:

@@ -11,10 +11,8 @@ from typing import Any
 
 from crowdbot import world
 from crowdbot.core import InputError, Walls
-from crowdbot.core.fields import attribute, check, mounted_field
+from crowdbot.core.fields import NAME, attribute, check, mounted_field
 from crowdbot.models import CrowdModel, Mixture
-
-from .notation import NAME
 
 
 @dataclass(frozen=True, kw_only=True)

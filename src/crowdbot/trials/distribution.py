@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, parse_number
-
-from .notation import plain
+from crowdbot.core.fields import plain
 
 FORMS = "a number, uniform(low, high), normal(mean, sd) or normal(mean, sd, low, high)"
 

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 
 from crowdbot import world
 from crowdbot.core import InputError
-from crowdbot.core.fields import attribute, check, children
+from crowdbot.core.fields import Points, attribute, check, children
 
 from .distribution import Distribution
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 from .journey import Journey
-from .notation import Points
 from .robots.reaction import ReactionSpec, check_shares
 
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
@@ -137,9 +136,9 @@ class SourceSpec:
     def source(self, journeys: Sequence[Journey], crowds: Sequence[str]) -> world.PeopleSource:
         """Return the source of a world, given the journeys and the names of the crowds of the trial."""
         named = next((journey.journey() for journey in journeys if journey.name == self.journey), None)
-        goal = named or world.WaypointSequence((world.PolygonZone(self.goal, aim="random"),), self.arrival)
+        goal = named or world.WaypointSequence((world.Zone(self.goal, aim="random"),), self.arrival)
         return world.PeopleSource(
-            world.PolygonZone(self.zone),
+            world.Zone(self.zone),
             goal,
             self.rate,
             self.timing,

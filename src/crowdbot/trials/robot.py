@@ -25,7 +25,7 @@ from crowdbot.core import (
     did_you_mean,
     reads_only,
 )
-from crowdbot.core.fields import attribute, check, child, children, mounted_field, plugin_field, quote_value
+from crowdbot.core.fields import NAME, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner, SafetyLayer
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Lidar2D, Lidar3D, Sensor, SensorSchedule
@@ -34,7 +34,6 @@ from crowdbot.world import Drive, Twists, builtin_robots, check_joint, frame, ro
 
 from .faults.fault import FaultSpec, fault_problems
 from .human_kinds import ABOUT_RIDER, rider_problems
-from .notation import NAME
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose, mirrored_pose
 

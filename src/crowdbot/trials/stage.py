@@ -14,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
-from crowdbot.core.fields import attribute, check, children, quote_value
+from crowdbot.core.fields import Points, attribute, check, children, quote_value
 from crowdbot.world import Appearance, Cube, Light, Table, Tree, add_rings
 
 from .files.stage_maps import FARTHEST_FILE, FilePlacement, area_of, map_of
 from .files.trial_files import resolve_file
 from .ground.door import Door
 from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
-from .notation import Points
 
 if TYPE_CHECKING:
     from crowdbot.world import PhysicsStage

@@ -13,12 +13,13 @@ import numpy as np
 from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, InputError, Path2D, draw_svg
 from crowdbot.core.fields import attribute, check, child, children
 from crowdbot.models import CrowdModel
+from crowdbot.world import Exit, Portal
 
 from .agent import Agent, Avatar
 from .cameras.camera import Camera
 from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
 from .ground.plan import floor_plan
-from .journey import Exit, Journey, Portal
+from .journey import Journey
 from .people import SourceSpec, Spawner
 from .recorded_people import RecordedPeople
 from .robot import Mount, RobotGoal, RobotSpec

@@ -41,15 +41,16 @@ if TYPE_CHECKING:
     from .crowd.journey import WaypointSequence as WaypointSequence
     from .crowd.limits import CrowdLimits as CrowdLimits
     from .crowd.people_flow import environment_seeds as environment_seeds
-    from .crowd.portal import PortalTransfer as PortalTransfer
+    from .crowd.portal import Exit as Exit
+    from .crowd.portal import Portal as Portal
     from .crowd.replay import ReplayedPeople as ReplayedPeople
     from .crowd.replay import ReplayedTrack as ReplayedTrack
     from .crowd.routing import Router as Router
     from .crowd.source import PeopleSource as PeopleSource
-    from .crowd.waypoint import HeadingWaypoint as HeadingWaypoint
-    from .crowd.waypoint import PointWaypoint as PointWaypoint
-    from .crowd.waypoint import PolygonZone as PolygonZone
+    from .crowd.waypoint import Direction as Direction
+    from .crowd.waypoint import Point as Point
     from .crowd.waypoint import Waypoint as Waypoint
+    from .crowd.waypoint import Zone as Zone
     from .doors.doors import Doors as Doors
     from .doors.leaf import DoorLeaf as DoorLeaf
     from .doors.motion import show_doors as show_doors

@@ -26,12 +26,12 @@ from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
 from .crowd.people_flow import PeopleFlow, environment_seeds
-from .crowd.portal import PortalTransfer
+from .crowd.portal import Exit, Portal
 from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
 from .crowd.source import PeopleSource
 from .crowd.wall_crossing import ContactSurfaces, stop_at_walls
-from .crowd.waypoint import PolygonZone
+from .crowd.waypoint import Zone
 from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
 from .planar_live_changes import (
@@ -156,8 +156,8 @@ class PlanarWorld(World):
     limits: CrowdLimits | None = None
     journeys: JourneyAssignment | None = None
     sources: Sequence[PeopleSource] = ()
-    exits: Sequence[PolygonZone] = ()
-    portals: Sequence[PortalTransfer] = ()
+    exits: Sequence[Exit | Zone] = ()
+    portals: Sequence[Portal] = ()
     script: ReplayedPeople | None = None
     heading_jitter: float = 0.0
     substeps: int = 1

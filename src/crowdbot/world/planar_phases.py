@@ -22,8 +22,8 @@ from crowdbot.world.crowd.wall_crossing import ContactSurfaces
 
 from .crowd.agent_arrays import BOOL, FLOAT, dense
 from .crowd.people_flow import PeopleFlow
-from .crowd.portal import PortalTransfer, apply_portals
-from .crowd.waypoint import PolygonZone, is_inside
+from .crowd.portal import Exit, Portal, apply_portals
+from .crowd.waypoint import Zone, is_inside
 from .robots.drives.drive import Drive, Twists
 from .world import Contact
 
@@ -40,10 +40,10 @@ def leave_at_goals(scene: Scene, radius: float) -> Scene:
     return scene.replace(active=stay) if some else scene
 
 
-def leave_in_zone(scene: Scene, zone: PolygonZone) -> Scene:
+def leave_in_zone(scene: Scene, zone: Exit | Zone) -> Scene:
     """Return the scene without the people in a zone; robots stay.
 
-    >>> corner = PolygonZone(((0, 0), (2, 0), (2, 2), (0, 2)))
+    >>> corner = Zone(((0, 0), (2, 0), (2, 2), (0, 2)))
     >>> leave_in_zone(Scene.of([[1.0, 1.0], [3.0, 1.0]]), corner).active.tolist()
     [[False, True]]
     """
@@ -309,8 +309,8 @@ def exchange_people(
     before: Scene,
     after: Scene,
     leave_radius: float | None,
-    exits: Sequence[PolygonZone],
-    portals: Sequence[PortalTransfer],
+    exits: Sequence[Exit | Zone],
+    portals: Sequence[Portal],
     flow: PeopleFlow,
     elapsed: float | NDArray[np.float64],
 ) -> Scene:

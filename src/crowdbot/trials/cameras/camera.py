@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from crowdbot import world
 from crowdbot.core import InputError
-from crowdbot.core.fields import attribute, check
+from crowdbot.core.fields import NAME, attribute, check
 from crowdbot.sensors import RENDERERS, SAMPLE_COUNTS
-from crowdbot.trials.notation import NAME
 
 if TYPE_CHECKING:
     from crowdbot.trials.stage import Stage

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.core.fields import attribute, check, mounted_field
-from crowdbot.trials.notation import NAME
+from crowdbot.core.fields import NAME, attribute, check, mounted_field
 from crowdbot.typing import Bools, Floats
 
 LONG = 86_400.0

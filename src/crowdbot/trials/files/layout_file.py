@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import InputError
+from crowdbot.core.fields import Points
 from crowdbot.data import PlaceLayout
 from crowdbot.trials.builtin import load_trial
-from crowdbot.trials.journey import Zone
-from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
+from crowdbot.world import Zone
 
 _STAGES = Path(__file__).parents[2] / "assets" / "stages"
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from crowdbot import world
 from crowdbot.core import InputError, parse_number
-from crowdbot.core.fields import attribute, check
-from crowdbot.trials.notation import Points
+from crowdbot.core.fields import Points, attribute, check
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import InputError, TrialError
+from crowdbot.core.fields import Points
 from crowdbot.models import ORCA
 from crowdbot.trials.ground.door import Door
-from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
 from crowdbot.typing import Floats

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core import TrialError
+from crowdbot.core.fields import Points
 from crowdbot.models import ORCA
-from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
 from crowdbot.trials.validation.rates import LARGEST_EXTENT, SMALLEST_EXTENT, size_text

@@ -15,11 +15,12 @@ from typing import Any
 from crowdbot.core import InputError, TrialError, parse_yaml
 from crowdbot.models import GroupForce
 from crowdbot.trials.agent import Agent
-from crowdbot.trials.journey import Journey, Point
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import End, Trial
 from crowdbot.trials.xml.trial_text import read_trial_bytes
+from crowdbot.world import Point
 
 from .original import ImportedTrial
 

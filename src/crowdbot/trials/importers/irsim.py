@@ -15,7 +15,7 @@ from crowdbot.core import InputError
 from crowdbot.models import ORCA, CrowdModel, SocialForce
 from crowdbot.trials.files.stage_maps import image_solids
 from crowdbot.trials.files.trial_files import resolve_file
-from crowdbot.trials.journey import Point
+from crowdbot.world import Point
 
 from .foreign_text import yaml_of
 from .original import ImportedTrial

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import Element, InputError
+from crowdbot.core.fields import Points
 from crowdbot.models import CollisionFreeSpeed
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.files.trial_files import resolve_file
-from crowdbot.trials.journey import Exit, Zone
-from crowdbot.trials.notation import Points
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.world import Exit, Zone
 
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import Element, InputError
+from crowdbot.core.fields import Points
 from crowdbot.models import ORCA, CrowdModel, SocialForce
 from crowdbot.trials.files.trial_files import resolve_file
-from crowdbot.trials.journey import Point, Zone
-from crowdbot.trials.notation import Points
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.world import Point, Zone
 
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box, move

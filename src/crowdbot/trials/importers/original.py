@@ -17,16 +17,17 @@ from typing import Any
 
 from crowdbot import models
 from crowdbot.core import Element, InputError, TrialError, parameters, parse_number
+from crowdbot.core.fields import Points
 from crowdbot.models import CrowdModel
 from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.crowd import Crowds, Routing
 from crowdbot.trials.files.trial_files import resolve_file
-from crowdbot.trials.journey import Direction, Journey, Point
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import End, EndCondition, Trial
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.world import Direction, Point
 
 KINDS: dict[str, tuple[type[CrowdModel], dict[str, str]]] = {
     "RVOconfig": (

@@ -10,16 +10,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from crowdbot.core import Element, TrialError
+from crowdbot.core.fields import Points
 from crowdbot.models import SocialForce
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Routing
-from crowdbot.trials.journey import Journey, Point
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.world import Point
 
 from .original import ImportedTrial
 from .umans import number_of

@@ -10,15 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError, TrialError, parse_number
+from crowdbot.core.fields import Points
 from crowdbot.models import CrowdModel, SocialForce
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Routing
-from crowdbot.trials.journey import Journey, Point, Zone
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import End, Trial
+from crowdbot.world import Point, Zone
 
 from .original import ImportedTrial
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from crowdbot import models
 from crowdbot.core import Element, InputError, TrialError, parse_number
+from crowdbot.core.fields import Points
 from crowdbot.models import CrowdModel
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowds
-from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Obstacle, Stage
 from crowdbot.trials.trial import End, Trial
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes

@@ -14,15 +14,16 @@ from typing import Any
 
 from crowdbot import models
 from crowdbot.core import TrialError
+from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Routing
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.journey import Journey, Zone
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Obstacle, Stage
 from crowdbot.trials.trial import End, Trial
 from crowdbot.trials.xml.trial_text import read_trial_bytes
+from crowdbot.world import Zone
 
 from .original import ImportedTrial
 

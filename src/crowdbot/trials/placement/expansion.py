@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crowdbot.core import TrialError
+from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent, AgentParameter, Avatar
 from crowdbot.trials.crowd import Crowds, crowd_names
-from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.randomized_model import RandomizedModel
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import stream
+from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent, Avatar
-from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.stage import Stage, area

@@ -13,14 +13,15 @@ from __future__ import annotations
 import dataclasses
 import math
 
+from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import ContactSpec, Routing
-from crowdbot.trials.journey import Journey, Zone
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Obstacle, Stage
 from crowdbot.trials.trial import RobotSpec, Trial
+from crowdbot.world import Zone
 
 from .crowds import circle_crossing
 from .parts import STILL, box, number, robot, scenario, uniform

@@ -15,10 +15,11 @@ import math
 
 from crowdbot.trials.builtin_names import FLOWS, SIZES, TITLES
 from crowdbot.trials.crowd import ContactSpec, Limits
-from crowdbot.trials.journey import Journey, Portal, Zone
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import End, RobotSpec, Trial
+from crowdbot.world import Portal, Zone
 
 from .crowds import DEEP, ends
 from .parts import box, corridor, number, robot, scenario, uniform

@@ -10,16 +10,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from crowdbot.core.fields import Points
 from crowdbot.models import ORCA
 from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import ContactSpec, Routing
-from crowdbot.trials.journey import Direction, Exit, Journey, Portal, Zone
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
-from crowdbot.world import Omnidirectional
+from crowdbot.world import Direction, Exit, Omnidirectional, Portal, Zone
 
 from .parts import box, corridor, flow, number, pairs, robot, scenario
 from .preset import Preset, PresetOption, ScenarioCard

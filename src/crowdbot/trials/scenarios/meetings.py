@@ -9,16 +9,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import Routing
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.journey import Journey, Point
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import Trial
-from crowdbot.world import DifferentialDrive
+from crowdbot.world import DifferentialDrive, Point
 
 from .parts import box, corridor, robot, scenario, uniform
 from .preset import Preset, PresetOption, ScenarioCard

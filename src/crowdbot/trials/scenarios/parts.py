@@ -6,10 +6,10 @@ import math
 from typing import Any
 
 from crowdbot import navigation
+from crowdbot.core.fields import Points
 from crowdbot.models import ORCA
 from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Group, Spawner
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import Mount, RobotGoal, RobotSpec, Trial

@@ -11,7 +11,7 @@ from typing import Any
 
 from crowdbot import models, navigation
 from crowdbot.core import InputError, TrialError, did_you_mean, find_class, parse_number
-from crowdbot.trials.notation import unit_hint
+from crowdbot.core.fields import unit_hint
 from crowdbot.trials.parser import check_trial
 from crowdbot.trials.trial import RobotSpec, Trial
 

@@ -13,14 +13,15 @@ from typing import NamedTuple
 from numpy.random import Generator
 
 from crowdbot.core import stream
+from crowdbot.core.fields import Points
 from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import ContactSpec, Routing
-from crowdbot.trials.journey import Journey, Zone
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import Planner
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
+from crowdbot.world import Zone
 
 from .parts import box, robot, scenario
 from .preset import Preset, PresetOption

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import dataclasses
 
+from crowdbot.core.fields import Points
 from crowdbot.trials.builtin_names import TITLES
 from crowdbot.trials.crowd import Routing
-from crowdbot.trials.journey import Journey, Point, Zone
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import Planner
 from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import Trial
+from crowdbot.world import Point, Zone
 
 from .parts import box, robot, scenario
 from .preset import Preset, PresetOption, ScenarioCard

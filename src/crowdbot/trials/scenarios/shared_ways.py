@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import math
 
+from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.builtin_names import TITLES
-from crowdbot.trials.journey import Direction, Journey
-from crowdbot.trials.notation import Points
+from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
+from crowdbot.world import Direction
 
 from .parts import STILL, box, corridor, robot, scenario
 from .preset import Preset, PresetOption, ScenarioCard

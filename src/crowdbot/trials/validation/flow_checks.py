@@ -11,19 +11,17 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from crowdbot.core import InputError, UnreadableValue, did_you_mean, stream, unread_fields
-from crowdbot.core.fields import quote_value
+from crowdbot.core.fields import Points, quote_value
 from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.crowd import Crowd, Crowds
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.journey import Direction, Exit, Point, Portal, Zone
-from crowdbot.trials.notation import Points
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.spawn_placement import points_in
 from crowdbot.trials.randomized_model import RandomizedModel
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
 from crowdbot.typing import Floats
-from crowdbot.world import Router
+from crowdbot.world import Direction, Exit, Point, Portal, Router, Zone
 
 Problems = Iterator[tuple[Any, str]]
 """Elements with a problem, each with the end of a sentence about it."""

@@ -11,18 +11,17 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
-from crowdbot.core.fields import quote_value
+from crowdbot.core.fields import Points, quote_value
 from crowdbot.navigation import PathPlanner
 from crowdbot.trials.agent import Avatar
 from crowdbot.trials.cameras.camera import Camera
-from crowdbot.trials.journey import Zone
-from crowdbot.trials.notation import Points
 from crowdbot.trials.placement.population import gap_to_robot, gap_to_walls, place, smallest_reach, start_outline
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
 from crowdbot.trials.robots.robot_pose import start_problem
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
+from crowdbot.world import Zone
 
 from .flow_checks import (
     Problems,

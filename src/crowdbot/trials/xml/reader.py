@@ -25,9 +25,8 @@ from crowdbot.core import (
     nearest_name,
     parse_number,
 )
-from crowdbot.core.fields import FieldSpec, PluginSpec, outline, quote_value
+from crowdbot.core.fields import FieldSpec, PluginSpec, outline, quote_value, unit_hint
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.notation import unit_hint
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
 MOST_PROBLEMS = 100

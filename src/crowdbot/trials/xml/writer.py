@@ -16,9 +16,8 @@ from crowdbot.core import (
     plugin_address,
     required_fields,
 )
-from crowdbot.core.fields import FieldSpec, outline
+from crowdbot.core.fields import FieldSpec, outline, plain
 from crowdbot.models import HeadwayLayer
-from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
 
 

@@ -11,9 +11,8 @@ import re
 from typing import Any
 
 from crowdbot.core import Element, builtin_classes, format_xml
-from crowdbot.core.fields import LARGEST, Constraint, FieldSpec, PluginSpec, outline
+from crowdbot.core.fields import LARGEST, Constraint, FieldSpec, PluginSpec, Points, outline
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.notation import Points
 from crowdbot.trials.trial import Trial
 
 NUMBER = r"[+\-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+\-]?[0-9]{1,4})?"

@@ -351,9 +351,9 @@ class Arrivals:
         first_journey: index of the journey of the first source; the others follow.
         fresh: initial values in the memory of the scene for a new person, by name (default: 0).
 
-    >>> from crowdbot.world import PointWaypoint, PolygonZone, WaypointSequence
-    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
-    >>> path = WaypointSequence((PointWaypoint(9, 1),))
+    >>> from crowdbot.world import Point, Zone, WaypointSequence
+    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> path = WaypointSequence((Point(9, 1),))
     >>> coming = Arrivals([PeopleSource(door, path, rate=2.0, timing="regular")], [0], 0, {})
     >>> empty = Scene.of(np.zeros((3, 2)), active=False)
     >>> scene, new = coming.let_in(empty, 0.6, np.arange(3)[None], np.array([3]))
@@ -477,9 +477,9 @@ def arrival_counts(sources: Sequence[PeopleSource], seeds: Sequence[int], time: 
         time: time [s].
         first: number of the first source in the world.
 
-    >>> from crowdbot.world import PointWaypoint, PolygonZone, WaypointSequence
-    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
-    >>> source = PeopleSource(door, WaypointSequence((PointWaypoint(9, 1),)), rate=0.5, timing="regular")
+    >>> from crowdbot.world import Point, Zone, WaypointSequence
+    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> source = PeopleSource(door, WaypointSequence((Point(9, 1),)), rate=0.5, timing="regular")
     >>> arrival_counts([source], seeds=[0, 1], time=9.0).tolist()
     [[5], [5]]
     """

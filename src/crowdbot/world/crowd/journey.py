@@ -37,8 +37,8 @@ class WaypointSequence:
     Raises:
         InputError: there is no waypoint, or a value is not a waypoint.
 
-    >>> from crowdbot.world import PointWaypoint, PolygonZone
-    >>> WaypointSequence((PointWaypoint(5.0, 0.0), PolygonZone(((9, 0), (11, 0), (10, 1)))), then="stay").then
+    >>> from crowdbot.world import Point, Zone
+    >>> WaypointSequence((Point(5.0, 0.0), Zone(((9, 0), (11, 0), (10, 1)))), then="stay").then
     'stay'
     """
 
@@ -73,8 +73,8 @@ class JourneyAssignment:
     Raises:
         InputError: an index is out of range.
 
-    >>> from crowdbot.world import PointWaypoint
-    >>> paths = [WaypointSequence((PointWaypoint(x, 5.0),)) for x in (0.0, 9.0)]
+    >>> from crowdbot.world import Point
+    >>> paths = [WaypointSequence((Point(x, 5.0),)) for x in (0.0, 9.0)]
     >>> both = JourneyAssignment(tuple(paths), which=[0, 1, -1])
     >>> both.start(Scene.of([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([0]), np.array([[0, 1, 2]])).goal.tolist()
     [[[0.0, 5.0], [9.0, 5.0], [2.0, 0.0]]]

@@ -1,7 +1,8 @@
-"""Portals, which transfer people from one zone to another."""
+"""Exits, where people leave, and portals, which transfer people from one zone to another."""
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, kernel
+from crowdbot.core.fields import Points, attribute, check
 from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import BOOL, FLOAT, dense
-from .waypoint import PolygonZone, is_inside
+from .waypoint import is_inside, polygon_ring
 
 Numbers = NDArray[np.int64]
 
@@ -22,36 +24,54 @@ GAP = 0.01
 """Minimum clearance [m] to other bodies at the exit."""
 
 
-@dataclass(frozen=True)
-class PortalTransfer:
-    """A portal: people in the zone are moved by (dx, dy) as soon as there is room. Robots are not moved.
+@dataclass(frozen=True, kw_only=True)
+class Exit:
+    """A zone in which all people leave, whatever their goal; robots are not affected."""
 
-    A person without room at the exit waits in the zone. People who wait at each other's exits change places.
+    name: str = attribute("", about="name for messages")
+    zone: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
 
-    A transferred person counts as a new person with a new identity, so tracks have no jumps. The person keeps velocity
-    and goal.
+    def __post_init__(self) -> None:
+        check(self)
 
-    Fields:
-        zone: entrance of the portal.
-        dx, dy: displacement [m].
+    @functools.cached_property
+    def ring(self) -> Floats:
+        """Corners ``[N, 2]`` [m]."""
+        return polygon_ring(self.zone)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Portal:
+    """A zone that moves people elsewhere, with a new id; robots are not affected.
+
+    People in the zone are moved by (dx, dy) as soon as there is room; until then they wait in the zone. People who
+    wait at each other's exits change places. A transferred person keeps velocity and goal, and counts as a new person,
+    so tracks have no jumps.
 
     Raises:
-        InputError: the displacement is not finite, or 0.
+        InputError: the displacement is 0, or a value is not allowed.
 
-    >>> PortalTransfer(PolygonZone(((24, -5), (26, -5), (26, 5), (24, 5))), dx=-48.0).dy
+    >>> Portal(zone="25,-5 30,-5 30,5 25,5", dx=-50).dy
     0.0
     """
 
-    zone: PolygonZone
-    dx: float = 0.0
-    dy: float = 0.0
+    name: str = attribute("", about="name for messages")
+    zone: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
+    dx: float = attribute(0.0, about="offset from the zone to the exit of the portal", unit="m")
+    dy: float = attribute(0.0, about="offset from the zone to the exit of the portal", unit="m")
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.dx) and math.isfinite(self.dy)) or (self.dx == 0.0 and self.dy == 0.0):
-            raise InputError(f"PortalTransfer: dx = {self.dx} m, dy = {self.dy} m must be finite, and not both 0")
+        check(self)
+        if self.dx == 0.0 and self.dy == 0.0:
+            raise InputError("needs dx or dy: the offset of the exit from the zone")
+
+    @functools.cached_property
+    def ring(self) -> Floats:
+        """Corners ``[N, 2]`` [m] of the entrance."""
+        return polygon_ring(self.zone)
 
 
-def apply_portals(before: Scene, scene: Scene, portals: Sequence[PortalTransfer], ids: Any, following: Any) -> Scene:
+def apply_portals(before: Scene, scene: Scene, portals: Sequence[Portal], ids: Any, following: Any) -> Scene:
     """Return the scene after people in portals have been transferred where there is room.
 
     Args:
@@ -66,7 +86,7 @@ def apply_portals(before: Scene, scene: Scene, portals: Sequence[PortalTransfer]
     shape = scene.shape
     pairs = (*shape, 2)
     position, velocity = scene.position.copy(), scene.velocity.copy()
-    rings = [portal.zone.ring for portal in portals]
+    rings = [portal.ring for portal in portals]
     changed = _transfer(
         np.concatenate(rings),
         np.cumsum([0, *map(len, rings)]),

@@ -13,7 +13,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.typing import Floats
 
 from .journey import WaypointSequence
-from .waypoint import PolygonZone
+from .waypoint import Zone, polygon_ring
 
 Numbers = NDArray[np.int64]
 
@@ -55,13 +55,13 @@ class PeopleSource:
     Raises:
         InputError: a value is not allowed.
 
-    >>> from crowdbot.world import PointWaypoint
-    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
-    >>> PeopleSource(door, WaypointSequence((PointWaypoint(9.0, 1.0),)), rate=0.5, max_count=20).timing
+    >>> from crowdbot.world import Point
+    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> PeopleSource(door, WaypointSequence((Point(9.0, 1.0),)), rate=0.5, max_count=20).timing
     'poisson'
     """
 
-    zone: PolygonZone
+    zone: Zone
     journey: WaypointSequence
     rate: float
     timing: str = "poisson"
@@ -73,6 +73,7 @@ class PeopleSource:
     model: int = 0
 
     def __post_init__(self) -> None:
+        polygon_ring(self.zone.points)
         if not 0.0 < self.rate <= MOST_RATE:
             raise InputError(f"PeopleSource: rate = {self.rate} people/s must be above 0 and at most {MOST_RATE:g}")
         if self.timing not in TIMINGS:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, did_you_mean, kernel
+from crowdbot.core import InputError, kernel
+from crowdbot.core.fields import Points, attribute, check
 from crowdbot.typing import Bools, Floats
 
 from .agent_arrays import FLOAT, dense
@@ -20,10 +22,11 @@ from .person_random import uniform
 Numbers = NDArray[np.int64]
 
 AHEAD = 1000.0
-"""Distance [m] of the goal of a heading waypoint."""
+"""Distance [m] of the goal of a direction."""
+TOLERANCE = 0.3
+"""Distance [m] from a goal at which a person has arrived."""
 TRIES = 5000
 """Points of the bounding box to try; a zone that none of them hits is too thin."""
-AIMS = ("nearest", "random")
 
 
 @dataclass(frozen=True)
@@ -68,21 +71,20 @@ class Waypoint(ABC):
 
 
 @dataclass(frozen=True)
-class PointWaypoint(Waypoint):
-    """A point, reached within the tolerance [m].
+class Point(Waypoint):
+    """A stop at a point.
 
     >>> goal = np.array([[1.0, 2.0], [1.0, 2.0]])
-    >>> PointWaypoint(1.0, 2.0).is_reached(np.array([[1.0, 1.8], [1.0, 1.0]]), goal).tolist()
+    >>> Point(1.0, 2.0).is_reached(np.array([[1.0, 1.8], [1.0, 1.0]]), goal).tolist()
     [True, False]
     """
 
-    x: float
-    y: float
-    tolerance: float = 0.3
+    x: float = attribute(about="x coordinate", unit="m")
+    y: float = attribute(about="y coordinate", unit="m")
+    tolerance: float = attribute(TOLERANCE, about="arrival tolerance", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
-        _check_finite("PointWaypoint", x=self.x, y=self.y)
-        _check_tolerance("PointWaypoint", self.tolerance)
+        check(self)
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         return np.tile([float(self.x), float(self.y)], (len(place), 1))
@@ -92,18 +94,18 @@ class PointWaypoint(Waypoint):
 
 
 @dataclass(frozen=True)
-class HeadingWaypoint(Waypoint):
-    """A constant walking direction [rad], counter-clockwise from +x; never reached, and without routing.
+class Direction(Waypoint):
+    """A direction to walk in without end: the last stop of a journey. Routing does not apply to it.
 
-    >>> HeadingWaypoint(0.0).is_reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
+    >>> Direction(0.0).is_reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
     [False]
     """
 
     uses_routing: ClassVar[bool] = False
-    heading: float = 0.0
+    heading: float = attribute(about="counter-clockwise from +x", unit="rad", min=-2.0 * math.pi, max=2.0 * math.pi)
 
     def __post_init__(self) -> None:
-        _check_finite("HeadingWaypoint", heading=self.heading)
+        check(self)
 
     @property
     def moves(self) -> bool:
@@ -121,42 +123,48 @@ class HeadingWaypoint(Waypoint):
         return np.zeros(len(place), dtype=np.bool_)
 
 
-@dataclass(frozen=True)
-class PolygonZone(Waypoint):
-    """A polygon, reached inside it or within the tolerance [m] of the goal of the person in it.
-
-    Fields:
-        corners: ``x, y`` [m], three or more, in either orientation.
-        aim: goal in the zone: the ``nearest`` point, or a ``random`` point for each person.
-        tolerance: tolerance [m].
+def polygon_ring(points: Points) -> Floats:
+    """Return the corners ``[N, 2]`` [m] of a zone.
 
     Raises:
-        InputError: the area is 0, or a value is not allowed.
+        InputError: the area is 0.
+    """
+    ring = np.array(points, dtype=np.float64)
+    area = 0.5 * abs(float(np.sum(ring[:, 0] * np.roll(ring[:, 1], -1) - np.roll(ring[:, 0], -1) * ring[:, 1])))
+    if area < 1e-6:
+        raise InputError(f"the corners {ring.tolist()} of a zone enclose {area:g} m2, the area must be above 0")
+    return ring
 
-    >>> hall = PolygonZone(((4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)))
+
+@dataclass(frozen=True)
+class Zone(Waypoint):
+    """A stop in a polygon.
+
+    It is reached inside, or within the tolerance of the person's own goal in it.
+
+    Raises:
+        InputError: a value is not allowed, or the area is 0 (when it is used).
+
+    >>> hall = Zone(((4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)))
     >>> hall.goal(np.array([[0.0, 1.0], [5.0, 2.0]]), PersonRandom(np.zeros(2, int), np.arange(2))).tolist()
     [[4.0, 1.0], [5.0, 2.0]]
     """
 
-    corners: Sequence[tuple[float, float]]
-    aim: str = "nearest"
-    tolerance: float = 0.3
-    _ring: Floats = field(init=False, repr=False, compare=False)
+    points: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
+    aim: str = attribute(
+        "nearest",
+        about="target in the zone: its nearest point, or a random point per person",
+        choices=("nearest", "random"),
+    )
+    tolerance: float = attribute(TOLERANCE, about="arrival tolerance of the random point", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
-        ring = np.array(self.corners, dtype=np.float64)
-        if ring.ndim != 2 or ring.shape[1:] != (2,) or len(ring) < 3 or not np.all(np.isfinite(ring)):
-            raise InputError(f"PolygonZone: corners {ring.tolist()} must be three or more finite points x, y")
-        area = 0.5 * abs(float(np.sum(ring[:, 0] * np.roll(ring[:, 1], -1) - np.roll(ring[:, 0], -1) * ring[:, 1])))
-        if area < 1e-6:
-            raise InputError(f"PolygonZone: corners {ring.tolist()} enclose {area:g} m2, the area must be above 0")
-        if self.aim not in AIMS:
-            raise InputError(
-                f"PolygonZone: aim {self.aim!r} is unknown{did_you_mean(self.aim, AIMS)}; use nearest or random"
-            )
-        _check_tolerance("PolygonZone", self.tolerance)
-        object.__setattr__(self, "corners", tuple(map(tuple, ring.tolist())))
-        object.__setattr__(self, "_ring", ring)
+        check(self)
+
+    @functools.cached_property
+    def ring(self) -> Floats:
+        """Corners ``[N, 2]`` [m]."""
+        return polygon_ring(self.points)
 
     @property
     def moves(self) -> bool:
@@ -166,7 +174,7 @@ class PolygonZone(Waypoint):
         if self.aim == "random":
             return self.sample(luck)
         out = np.empty((len(place), 2))
-        _nearest_points(self._ring, dense(place, (len(place), 2), FLOAT), out)
+        _nearest_points(self.ring, dense(place, (len(place), 2), FLOAT), out)
         return out
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
@@ -175,13 +183,8 @@ class PolygonZone(Waypoint):
     def contains(self, place: Floats) -> Bools:
         """Return ``[N]`` whether points ``[N, 2]`` [m] lie in the zone."""
         inside = np.empty(len(place), dtype=np.bool_)
-        _contain(self._ring, dense(place, (len(place), 2), FLOAT), inside)
+        _contain(self.ring, dense(place, (len(place), 2), FLOAT), inside)
         return inside
-
-    @property
-    def ring(self) -> Floats:
-        """Corners ``[N, 2]`` [m]."""
-        return self._ring
 
     def sample(self, luck: PersonRandom) -> Floats:
         """Return a random free point of the zone for each person, ``[N, 2]`` [m].
@@ -189,8 +192,8 @@ class PolygonZone(Waypoint):
         Raises:
             InputError: no free point was found.
         """
-        low = self._ring.min(axis=0)
-        size = self._ring.max(axis=0) - low
+        low = self.ring.min(axis=0)
+        size = self.ring.max(axis=0) - low
         points = np.zeros((len(luck.person), 2))
         missing = np.arange(len(points))
         for k in range(TRIES):
@@ -203,9 +206,7 @@ class PolygonZone(Waypoint):
                 good[good] = luck.holds(found[good])
             points[missing[good]] = found[good]
             missing = missing[~good]
-        raise InputError(
-            f"PolygonZone: no free position for a body was found in the zone with corners {list(self.corners)}"
-        )
+        raise InputError(f"Zone: no free position for a body was found in the zone with corners {list(self.points)}")
 
 
 @kernel
@@ -253,14 +254,3 @@ def _nearest_points(ring: Floats, place: Floats, out: Floats) -> None:
 
 def _within(place: Floats, goal: Floats, distance: float) -> Bools:
     return np.asarray((place[:, 0] - goal[:, 0]) ** 2 + (place[:, 1] - goal[:, 1]) ** 2 < distance * distance)
-
-
-def _check_finite(kind: str, **values: Any) -> None:
-    for name, value in values.items():
-        if not np.isfinite(value):
-            raise InputError(f"{kind}: {name} = {value} is not finite")
-
-
-def _check_tolerance(kind: str, value: float) -> None:
-    if not 0.0 < value < math.inf:
-        raise InputError(f"{kind}: tolerance {value} m must be finite and above 0")

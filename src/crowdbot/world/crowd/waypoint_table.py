@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.typing import Bools, Floats
 
-from .waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint, is_inside, nearest_point
+from .waypoint import Direction, Point, Waypoint, Zone, is_inside, nearest_point
 
 Numbers = NDArray[np.int64]
 
@@ -47,12 +47,12 @@ class WaypointTable(NamedTuple):
     def of(cls, journeys: Sequence[tuple[Sequence[Waypoint], str]]) -> WaypointTable:
         """Return the table of journeys, each with waypoints and what follows the last one.
 
-        >>> table = WaypointTable.of([([PointWaypoint(1.0, 2.0)], "leave")])
+        >>> table = WaypointTable.of([([Point(1.0, 2.0)], "leave")])
         >>> table.number.tolist(), table.leaves.tolist()
         ([[1.0, 2.0, 0.3]], [True])
         """
         stops = [stop for those, _ in journeys for stop in those]
-        rings = [stop.ring if type(stop) is PolygonZone else np.zeros((0, 2)) for stop in stops]
+        rings = [stop.ring if type(stop) is Zone else np.zeros((0, 2)) for stop in stops]
         return cls(
             _ends([len(those) for those, _ in journeys]),
             np.array([then == "again" for _, then in journeys], dtype=np.bool_),
@@ -75,17 +75,17 @@ def _ends(counts: Sequence[int]) -> Numbers:
 
 
 def _kind(stop: Waypoint) -> int:
-    if type(stop) is PolygonZone:
+    if type(stop) is Zone:
         return NEAREST if stop.aim == "nearest" else RANDOM
-    return {PointWaypoint: POINT, HeadingWaypoint: HEADING}.get(type(stop), OTHER)
+    return {Point: POINT, Direction: HEADING}.get(type(stop), OTHER)
 
 
 def _number(stop: Waypoint) -> tuple[float, float, float]:
-    if type(stop) is PointWaypoint:
+    if type(stop) is Point:
         return float(stop.x), float(stop.y), stop.tolerance
-    if type(stop) is HeadingWaypoint:
+    if type(stop) is Direction:
         return (*stop.ahead, 0.0)
-    return 0.0, 0.0, stop.tolerance if type(stop) is PolygonZone else 0.0
+    return 0.0, 0.0, stop.tolerance if type(stop) is Zone else 0.0
 
 
 @kernel
