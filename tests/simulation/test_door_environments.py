@@ -22,7 +22,7 @@ from crowdbot.simulation import (
     write_order,
 )
 from crowdbot.trials import Trial, parse_trial
-from crowdbot.world import DoorLeaf, Doors, PlanarWorld, worlds_of
+from crowdbot.world import Door, Doors, PlanarWorld, worlds_of
 
 TEXT = """<trial name="d" duration="8" world="{world}">
   <stage walkable="-1,-2 9,-2 9,2 -1,2">
@@ -171,4 +171,4 @@ def test_another_order_leaves_doors_as_they_were_ordered() -> None:
 def test_a_planar_world_of_several_environments_takes_no_doors() -> None:
     start = Scene.of(np.zeros((2, 1, 2)))
     with pytest.raises(InputError, match="join several worlds with join_worlds"):
-        PlanarWorld(start, ORCA(), {}, 0.1, doors=Doors((DoorLeaf("hall", 2.0, -1.0, 2.0, 1.0),)))
+        PlanarWorld(start, ORCA(), {}, 0.1, doors=Doors((Door(name="hall", points="2,-1 2,1"),)))

@@ -11,7 +11,7 @@ from crowdbot.core import InputError, Scene, Walls
 from crowdbot.recording import record, replay
 from crowdbot.simulation import ParameterOrder, Simulation
 from crowdbot.trials import Trial, load_trial, parse_trial
-from crowdbot.world import DoorLeaf, Doors, Router
+from crowdbot.world import Door, Doors, Router
 
 TEXT = """<trial name="d" duration="{duration}" world="{world}">
   <stage walkable="-1,-2 9,-2 9,2 -1,2">
@@ -110,7 +110,7 @@ def test_sensors_see_the_leaf_where_it_is() -> None:
 
 
 def test_a_door_waits_for_people_in_its_way() -> None:
-    doors = Doors((DoorLeaf("hall", 0.0, 0.0, 1.0, 0.0, duration=0.5),), {"hall": True})
+    doors = Doors((Door(name="hall", points="0,0 1,0", duration=0.5, open=True),))
     doors.wanted["hall"] = False
     standing = Scene.of([[0.6, 0.1]])
     for k in range(20):
@@ -124,7 +124,7 @@ def test_a_door_waits_for_people_in_its_way() -> None:
 def test_paths_avoid_closed_doors_and_return_when_they_open() -> None:
     walls = Walls.of([[(3.0, -2.0), (3.0, -0.5)], [(3.0, 0.5), (3.0, 2.0)], [(-1.0, -2.0), (9.0, -2.0)]])
     base = Router.of(walls, 0.25)
-    doors = Doors((DoorLeaf("hall", 3.0, -0.5, 3.0, 0.5),))
+    doors = Doors((Door(name="hall", points="3,-0.5 3,0.5"),))
     closed = doors.router(base).towards([0.0, 0.0], [8.0, 0.0])
     doors.wanted["hall"] = True
     for k in range(25):

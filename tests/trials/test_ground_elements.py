@@ -43,7 +43,7 @@ def test_a_trial_with_ground_and_doors_is_written_as_it_is_read() -> None:
     trial = parse_trial(_text())
     assert [type(item) for item in trial.stage.ground] == [Threshold, Ramp, Platform, Stairs]
     assert parse_trial(trial_xml(trial).encode()) == trial
-    assert trial.stage.physical().doors[0].times == (1.0, 3.0)
+    assert trial.stage.physical().doors[0].switches == (1.0, 3.0)
 
 
 def test_the_planar_world_refuses_uneven_ground_in_a_sentence() -> None:

@@ -64,8 +64,7 @@ def doors_of(trial: Trial) -> Doors | None:
     """Return the doors of a trial at its start."""
     if not trial.stage.doors:
         return None
-    wanted = {door.name: door.open for door in trial.stage.doors}
-    return Doors([door.leaf() for door in trial.stage.doors], wanted, pushed=trial.world == "physics")
+    return Doors(trial.stage.doors, pushed=trial.world == "physics")
 
 
 def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from crowdbot.trials.variants import remove_element as remove_element
     from crowdbot.world import Cube as Cube
     from crowdbot.world import Direction as Direction
+    from crowdbot.world import Door as Door
     from crowdbot.world import Exit as Exit
     from crowdbot.world import Light as Light
     from crowdbot.world import Point as Point
@@ -75,7 +76,6 @@ if TYPE_CHECKING:
     from .files.stage_maps import map_files as map_files
     from .files.trial_files import recording_files as recording_files
     from .files.trial_files import resolve_file as resolve_file
-    from .ground.door import Door as Door
     from .ground.elements import UNEVEN as UNEVEN
     from .ground.elements import Platform as Platform
     from .ground.elements import Ramp as Ramp

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
 from crowdbot.core.fields import Points, attribute, check, children, quote_value
-from crowdbot.world import Appearance, Cube, Light, Table, Tree, add_rings
+from crowdbot.world import Appearance, Cube, Door, Light, Table, Tree, add_rings
 
 from .files.stage_maps import FARTHEST_FILE, FilePlacement, area_of, map_of
 from .files.trial_files import resolve_file
-from .ground.door import Door
 from .ground.elements import GroundElement, Platform, Ramp, Stairs, Threshold, ground_of
 
 if TYPE_CHECKING:
@@ -162,9 +161,8 @@ class Stage:
         """Return props, lights and heights for the physics world."""
         from crowdbot.world import PhysicsStage, read_building
 
-        doors = tuple(door.leaf() for door in self.doors)
         return PhysicsStage(
-            self.wall_height, self.friction, self.props, self.lights, ground=ground_of(self.ground), doors=doors,
+            self.wall_height, self.friction, self.props, self.lights, ground=ground_of(self.ground), doors=self.doors,
             appearance=self.appearance[0] if self.appearance else Appearance(),
             building=read_building(resolve_file(self.building, self.folder, self.trust)) if self.building else None,
         )  # fmt: skip

@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from .crowd.waypoint import Point as Point
     from .crowd.waypoint import Waypoint as Waypoint
     from .crowd.waypoint import Zone as Zone
+    from .doors.door import Door as Door
     from .doors.doors import Doors as Doors
-    from .doors.leaf import DoorLeaf as DoorLeaf
     from .doors.motion import show_doors as show_doors
     from .ground.ground import Ground as Ground
     from .ground.part import GroundPart as GroundPart

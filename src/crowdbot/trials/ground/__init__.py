@@ -1,1 +1,1 @@
-"""Elements of the stage for uneven ground and doors."""
+"""Elements of the stage for uneven ground, and the floor plan."""

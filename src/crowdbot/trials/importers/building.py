@@ -11,11 +11,10 @@ import numpy as np
 from crowdbot.core import InputError, TrialError
 from crowdbot.core.fields import Points
 from crowdbot.models import ORCA
-from crowdbot.trials.ground.door import Door
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
 from crowdbot.typing import Floats
-from crowdbot.world import Building, read_building
+from crowdbot.world import Building, Door, read_building
 
 from .original import ImportedTrial
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from crowdbot.typing import Floats
 from crowdbot.world.crowd.routing import Router
 from crowdbot.world.physics.scenery import add_rings
 
-from .leaf import DoorLeaf
+from .door import Door
 
 SPARE = 0.05
 """Distance [m] that a moving leaf keeps from people and robots; it stops before."""
@@ -31,7 +31,6 @@ class Doors:
 
     Args:
         leaves: the doors.
-        wanted: doors that open by order or schedule, by name: whether they are open at the start (default: closed).
         pushed: whether doors that open by push are moved by an engine, so that :meth:`set_share` sets them.
 
     Attributes:
@@ -42,7 +41,7 @@ class Doors:
         side: ``[D]`` 1, or -1 for a hinged door that opens to the other side, since somebody is near on its own side.
         blocked: ``[D]`` whether paths avoid each door.
 
-    >>> doors = Doors((DoorLeaf("hall", 2.0, -1.0, 2.0, 1.0, duration=0.5),))
+    >>> doors = Doors((Door(name="hall", points="2,-1 2,1", duration=0.5),))
     >>> doors.wanted["hall"] = True
     >>> scene = Scene.of([[0.0, 0.0]])
     >>> for tick in range(3):
@@ -53,11 +52,9 @@ class Doors:
 
     storage = Storage(constants=("leaves", "pushed", "_walls", "_routers", "_base"))
 
-    def __init__(
-        self, leaves: Sequence[DoorLeaf], wanted: Mapping[str, bool] | None = None, pushed: bool = False
-    ) -> None:
+    def __init__(self, leaves: Sequence[Door], pushed: bool = False) -> None:
         self.leaves = tuple(leaves)
-        self.wanted = {leaf.name: bool((wanted or {}).get(leaf.name, False)) for leaf in self.leaves}
+        self.wanted = {leaf.name: leaf.open for leaf in self.leaves}
         starts = [self.wanted[leaf.name] and not leaf.lets_pass for leaf in self.leaves]
         self.share = np.array(starts, dtype=np.float64)
         self.start = self.share.copy()
@@ -149,7 +146,7 @@ class Doors:
             self._routers[key] = Router.of(walls, base.radius, "nearest" if any(self.blocked) else base.unreachable)
         return self._routers[key]
 
-    def _move(self, k: int, leaf: DoorLeaf, aim: float, most: float, place: Floats, radius: Floats) -> None:
+    def _move(self, k: int, leaf: Door, aim: float, most: float, place: Floats, radius: Floats) -> None:
         """Move a door by at most a share ``most``; a leaf that somebody blocks while it opens turns back."""
         if self.share[k] == 0.0 and aim > 0.0 and leaf.kind == "hinged":
             self.side[k] = _free_side(leaf, place)
@@ -166,12 +163,12 @@ class Doors:
     def _blocked(self) -> list[bool]:
         return [not leaf.lets_pass and bool(self.share[k] < OPEN) for k, leaf in enumerate(self.leaves)]
 
-    def _aim(self, number: int, leaf: DoorLeaf, place: Floats, radius: Floats, time: float) -> float:
+    def _aim(self, number: int, leaf: Door, place: Floats, radius: Floats, time: float) -> float:
         """Return 1 if a door is to open, 0 if it is to close."""
         if leaf.opening == "order":
             return float(self.wanted[leaf.name])
         if leaf.opening == "schedule":
-            return float(self.wanted[leaf.name] ^ (sum(time >= item - 1e-9 for item in leaf.times) % 2 == 1))
+            return float(self.wanted[leaf.name] ^ (sum(time >= item - 1e-9 for item in leaf.switches) % 2 == 1))
         away = _distance(leaf.line(0.0), place)
         near = away < (leaf.distance if leaf.opening == "approach" else radius + TOUCH)
         if np.any(near):
@@ -179,7 +176,7 @@ class Doors:
         return float(time < self.until[number])
 
 
-def _is_in_the_way(leaf: DoorLeaf, old: float, new: float, place: Floats, radius: Floats) -> bool:
+def _is_in_the_way(leaf: Door, old: float, new: float, place: Floats, radius: Floats) -> bool:
     """Return whether a leaf would come closer to somebody who is near."""
     if not len(place):
         return False
@@ -187,12 +184,12 @@ def _is_in_the_way(leaf: DoorLeaf, old: float, new: float, place: Floats, radius
     return bool(np.any((after < radius + SPARE) & (after < _distance(leaf.line(old), place))))
 
 
-def _free_side(leaf: DoorLeaf, place: Floats) -> float:
+def _free_side(leaf: Door, place: Floats) -> float:
     """Return 1 if a leaf can turn to its own side, -1 if somebody near is there and the other side has more room."""
     away = _distance(leaf.line(0.0), place)
     near = away < leaf.width + ROOM
-    along = np.array([leaf.end_x - leaf.x, leaf.end_y - leaf.y])
-    off = place - (leaf.x, leaf.y)
+    start, end = np.array(leaf.points)
+    along, off = end - start, place - start
     left = (along[0] * off[:, 1] - along[1] * off[:, 0]) * leaf.angle > 0.0
     own, other = away[near & left].min(initial=np.inf), away[near & ~left].min(initial=np.inf)
     return -1.0 if own < other else 1.0

@@ -13,7 +13,7 @@ from crowdbot.core import Element, InputError
 from crowdbot.core.fields import attribute, check
 from crowdbot.typing import Floats
 from crowdbot.world.buildings.building import Building
-from crowdbot.world.doors.leaf import DoorLeaf
+from crowdbot.world.doors.door import Door
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.stage_appearance import Appearance
 from crowdbot.world.urdf.geoms import row
@@ -248,7 +248,7 @@ class PhysicsStage:
     floor_color: Color = (0.80, 0.80, 0.78)
     wall_color: Color = (0.86, 0.84, 0.80)
     ground: Ground | None = None
-    doors: tuple[DoorLeaf, ...] = ()
+    doors: tuple[Door, ...] = ()
     appearance: Appearance = DAYLIGHT
     building: Building | None = None
 
