@@ -27,11 +27,11 @@ from crowdbot.world import (
     FLOORS,
     SKIES,
     WALL_SURFACES,
+    Appearance,
     PeopleMotion,
     PhysicsStage,
     Renderer,
     SceneCamera,
-    StageAppearance,
 )
 
 TALL = (128, 160, 200, 260, 320)
@@ -82,7 +82,7 @@ def pictures(name: str, k: int, seed: int = 0) -> list[tuple[Pixels, Sequence[in
     still, k = k % 2 == 0, k + 3 * seed
     for n, side in enumerate(SIDES):
         tall = TALL[(n + k) % len(TALL)]
-        looks = StageAppearance(
+        looks = Appearance(
             FLOORS[(k + n) % len(FLOORS)], WALL_SURFACES[(k + 2 * n) % len(WALL_SURFACES)], SKIES[(k + n) % len(SKIES)],
             sun_heading=2.0 + 0.7 * n,
         )  # fmt: skip

@@ -15,7 +15,7 @@ import numpy as np
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import ContactModel, CubeBody, PhysicsStage, PhysicsWorld, Robot, TableBody
+from crowdbot.world import ContactModel, Cube, PhysicsStage, PhysicsWorld, Robot, Table
 
 HALF, DT = 12.0, 0.1
 
@@ -36,7 +36,7 @@ def made(people: int) -> tuple[PhysicsWorld, int]:
         max_speed=1.8,
         walls=[room],
     )
-    stage = PhysicsStage(props=(CubeBody(3.0, 2.0, mass=15.0), TableBody(-6.0, 5.0), TableBody(6.0, -6.0, heading=1.0)))
+    stage = PhysicsStage(props=(Cube(3.0, 2.0, mass=15.0), Table(-6.0, 5.0), Table(6.0, -6.0, heading=1.0)))
     return PhysicsWorld(
         scene, ORCA(), {people: robot}, DT, stage=stage, contact=ContactModel(), heading_jitter=1e-3
     ), people

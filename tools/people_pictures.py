@@ -11,7 +11,7 @@ from PIL import Image
 
 from crowdbot.core import Scene
 from crowdbot.humans import ACTIVITIES, People
-from crowdbot.world import PeopleMotion, PhysicsStage, Renderer, Robot, SceneCamera, StageAppearance
+from crowdbot.world import Appearance, PeopleMotion, PhysicsStage, Renderer, Robot, SceneCamera
 
 WALKERS = (
     "man-20", "woman-20", "man-32", "woman-36", "man-55", "woman-60", "man-44", "woman-28", "man-66", "woman-41",
@@ -62,7 +62,7 @@ def moved(names: tuple[str, ...], doing: list[str], speeds: list[float], variati
 
 def row(
     names: tuple[str, ...], doing: list[str], speed: float, variation: object = None, detail: int = 0,
-    apart: float = 0.85, size: tuple[int, int] = (480, 400), look: StageAppearance = StageAppearance(),  # noqa: B008
+    apart: float = 0.85, size: tuple[int, int] = (480, 400), look: Appearance = Appearance(),  # noqa: B008
 ) -> Image3:  # fmt: skip
     """People beside each other, who come towards the camera."""
     count = len(names)
@@ -109,7 +109,7 @@ def places() -> Image3:
     for floor, walls, sky in PLACES:
         scene, motion = moved(WALKERS[:5], ["walk"] * 5, [1.2] * 5, np.arange(5), 1.2)
         scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=[[(-5.0, -30.0), (-5.0, 30.0)]]).walls)
-        stage = PhysicsStage(appearance=StageAppearance(floor, walls, sky))
+        stage = PhysicsStage(appearance=Appearance(floor, walls, sky))
         camera = SceneCamera(
             (6.5, 2.0, 1.6), (0.0, 0.0, 0.9), 640, 400, math.radians(34.0), detail=0, shadows=True,
             renderer="software", antialiasing=8,

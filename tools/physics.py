@@ -12,7 +12,7 @@ from matplotlib.image import imsave
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import CubeBody, PhysicsStage, PhysicsWorld, Robot, SceneCamera, TableBody, TreeBody, builtin_robots
+from crowdbot.world import Cube, PhysicsStage, PhysicsWorld, Robot, SceneCamera, Table, Tree, builtin_robots
 
 
 def crowd(robot: Robot, people: int) -> PhysicsWorld:
@@ -28,10 +28,10 @@ def crowd(robot: Robot, people: int) -> PhysicsWorld:
         active=np.append(np.hypot(*place.T) > robot.radius + 0.5, True), walls=[[(-7.0, 7.0), (7.0, 7.0)]],
     )  # fmt: skip
     props = (
-        TableBody(4.0, 5.8),
-        TreeBody(-5.5, 5.0, height=4.0, crown=1.1),
-        CubeBody(2.0, -3.5),
-        CubeBody(2.3, -4.4, size=0.3),
+        Table(4.0, 5.8),
+        Tree(-5.5, 5.0, height=4.0, crown=1.1),
+        Cube(2.0, -3.5),
+        Cube(2.3, -4.4, size=0.3),
     )
     world = PhysicsWorld(scene, ORCA(), {people: robot}, 0.1, stage=PhysicsStage(props=props))
     for _ in range(20):

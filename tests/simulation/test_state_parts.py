@@ -25,7 +25,7 @@ from crowdbot.simulation import (
     state_of,
 )
 from crowdbot.trials import Trial, parse_trial
-from crowdbot.world import CubeBody, Robot
+from crowdbot.world import Cube, Robot
 
 
 def lab(world: str) -> Trial:
@@ -150,7 +150,7 @@ def test_a_simulation_with_another_structure_has_no_state_and_says_why(world: st
 
 def test_a_removed_robot_and_changed_props_of_the_physics_world_have_no_state() -> None:
     simulation = begun(TRIALS["physics"], 3, 2)
-    name = simulation.world.add_prop(CubeBody(-4.0, -3.0))
+    name = simulation.world.add_prop(Cube(-4.0, -3.0))
     with pytest.raises(StateError, match="props were added or removed while the simulation ran"):
         state_of(simulation)
     simulation.world.remove_prop(name)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA, Mixture, SocialForce
 from crowdbot.trials import (
-    ContactSpec,
+    ContactModel,
     Crowds,
     Direction,
     Exit,
@@ -40,7 +40,7 @@ def test_a_file_with_flows_is_the_tree() -> None:
     trial = parse_trial(FLOW)
     assert (trial.substeps, trial.capacity, trial.robot_margin, trial.heading_jitter) == (2, 10, 0.2, 0.001)
     assert trial.routing == Routing(radius=0.25, unreachable="nearest")
-    assert trial.contact == ContactSpec(variant="force", stiffness=50.0, iterations=4)
+    assert trial.contact == ContactModel(variant="force", stiffness=50.0, iterations=4)
     assert trial.limits == Limits(max_speed=2.5, max_acceleration=5.0)
     assert trial.crowd == Crowds((ORCA(time_horizon=2.0), SocialForce()), names=("calm", "hurried"))
     zone, point, direction = trial.journeys[0].stops
@@ -94,7 +94,7 @@ def flows(draw: st.DrawFn) -> Trial:
         heading_jitter=draw(st.floats(0.0, 3.0)),
         crowd=draw(st.sampled_from([ORCA(), crowds, Crowds((ORCA(),), names=(name,))])),
         routing=draw(st.one_of(st.none(), st.builds(Routing, radius=st.floats(0.1, 0.4)))),
-        contact=draw(st.one_of(st.none(), st.builds(ContactSpec, stiffness=amounts, iterations=st.integers(1, 9)))),
+        contact=draw(st.one_of(st.none(), st.builds(ContactModel, stiffness=amounts, iterations=st.integers(1, 9)))),
         limits=draw(st.one_of(st.none(), st.builds(Limits, max_speed=st.one_of(st.none(), amounts)))),
         stage=Stage(walls=[Wall([(20, 0), (20, 5)])]),
         journeys=[journey, other],

@@ -11,12 +11,12 @@ from physics_worlds import crowded
 from crowdbot.core import InputError, Scene, Twist, Walls
 from crowdbot.models import ORCA
 from crowdbot.world import (
-    CubeBody,
+    Cube,
     PhysicsStage,
     PhysicsWorld,
     PlanarWorld,
     Robot,
-    TableBody,
+    Table,
     add_person,
     join_worlds,
     put_environments,
@@ -28,7 +28,7 @@ from crowdbot.world.physics.world import MORE
 
 BOT, CHAIR = Robot.load("turtlebot2"), Robot.load("wheelchair")
 COUNT = 12
-STAGE = PhysicsStage(props=(CubeBody(1.2, 0.0, size=0.3, mass=2.0), TableBody(-4.0, 4.5)))
+STAGE = PhysicsStage(props=(Cube(1.2, 0.0, size=0.3, mass=2.0), Table(-4.0, 4.5)))
 WALL = Walls.of([[(-8.0, -8.0), (8.0, -8.0)]])
 
 
@@ -160,8 +160,8 @@ def test_a_ghost_can_come_and_go() -> None:
 def test_props_come_and_go() -> None:
     world, alone = hall(), hall()
     before = state(world)
-    name = world.add_prop(CubeBody(6.0, 6.0, size=0.5), "box")
-    fixed = world.add_prop(TableBody(-6.0, -6.0))
+    name = world.add_prop(Cube(6.0, 6.0, size=0.5), "box")
+    fixed = world.add_prop(Table(-6.0, -6.0))
     assert (name, fixed) == ("box", "prop3")
     assert_kept(before, state(world))
     assert world.prop(2)[2, 3] == pytest.approx(0.25, abs=1e-3)
@@ -171,7 +171,7 @@ def test_props_come_and_go() -> None:
     for key, value in state(alone).items():
         np.testing.assert_allclose(state(world)[key], value, atol=1e-6, err_msg=str(key))
     with pytest.raises(InputError, match="there is already a prop 'box'"):
-        world.add_prop(CubeBody(0.0, 5.0), "box")
+        world.add_prop(Cube(0.0, 5.0), "box")
     with pytest.raises(InputError, match="there is no prop 'bok'; did you mean 'box'|there is no prop 'bok'"):
         world.remove_prop("bok")
     world.remove_prop("box")
@@ -190,7 +190,7 @@ def test_a_new_prop_is_pushed_by_a_robot() -> None:
     world = hall(stage=PhysicsStage())
     x, y = world.pose(COUNT).position[0].tolist()
     heading = float(world.pose(COUNT).heading[0])
-    world.add_prop(CubeBody(x + 0.5 * np.cos(heading), y + 0.5 * np.sin(heading), size=0.3, mass=1.0))
+    world.add_prop(Cube(x + 0.5 * np.cos(heading), y + 0.5 * np.sin(heading), size=0.3, mass=1.0))
     first = world.prop(0)[:2, 3].copy()
     drive(world, 30)
     assert np.hypot(*(world.prop(0)[:2, 3] - first)) > 0.1
@@ -264,7 +264,7 @@ def test_robots_of_single_environments() -> None:
 def test_copies_and_new_environments_work_after_changes() -> None:
     world: Any = batch()
     agent = world.add_robot(CHAIR, 3.0, -6.0)
-    world.add_prop(CubeBody(6.0, 6.0), "box")
+    world.add_prop(Cube(6.0, 6.0), "box")
     add_person(world, (5.0, 5.0), (0.0, 5.0), 1.0, 0.25, 2)
     commands = {COUNT: Twist(0.5, 0.1), agent: Twist(0.3)}
     world.step(commands)
@@ -330,8 +330,8 @@ def test_planar_worlds_offer_the_same() -> None:
     scene = crowded(COUNT, BOT).replace(walls=WALL)
     world = PlanarWorld(scene, ORCA(), {COUNT: BOT.drive}, 0.05)
     edges = len(world.scene.walls)
-    world.add_prop(CubeBody(5.0, 5.0), "box")
-    table = world.add_prop(TableBody(0.0, 7.0))
+    world.add_prop(Cube(5.0, 5.0), "box")
+    table = world.add_prop(Table(0.0, 7.0))
     assert (table, len(world.scene.walls)) == ("prop1", edges + 8)
     world.remove_prop("box")
     assert len(world.scene.walls) == edges + 4

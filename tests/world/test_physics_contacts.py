@@ -5,7 +5,7 @@ import pytest
 from physics_worlds import alone, facing, ram
 
 from crowdbot.core import Twist
-from crowdbot.world import ContactBody, CubeBody, PhysicsStage, Robot, two_body_force
+from crowdbot.world import ContactBody, Cube, PhysicsStage, Robot, two_body_force
 from crowdbot.world.physics.contact_events import BodyContactTracker
 from crowdbot.world.physics.contacts import EngineContact
 from crowdbot.world.physics.mjcf_model import LIMB_NAMES
@@ -153,9 +153,7 @@ def test_repeated_knocks_are_no_clamping():
 
 def test_a_leg_over_a_cube_is_lifted():
     """A cube appears under a foot: the engine's limb rises at once and stays above it, and nothing is clamped."""
-    world = facing(
-        Robot.load("turtlebot2"), gap=3.0, dt=0.05, stage=PhysicsStage(props=(CubeBody(3.0, 0.0, size=0.08),))
-    )
+    world = facing(Robot.load("turtlebot2"), gap=3.0, dt=0.05, stage=PhysicsStage(props=(Cube(3.0, 0.0, size=0.08),)))
     forces, heights = [], []
     for _ in range(40):
         world.step({0: Twist()})

@@ -10,7 +10,7 @@ from physics_worlds import alone, coasting, facing, ram
 from crowdbot.core import InputError, Twist
 from crowdbot.world import (
     BODY_REGION_LIMITS,
-    CubeBody,
+    Cube,
     PhysicsStage,
     Robot,
     frame,
@@ -150,8 +150,8 @@ def test_from_behind_it_is_the_back_and_the_one_who_walks_is_the_cause():
 
 def test_a_cube_is_pushed_and_a_fixed_one_is_not():
     robot = Robot.load("cuybot")
-    free = alone(robot, stage=PhysicsStage(props=(CubeBody(1.0, 0.0, size=0.4, mass=5.0),)))
-    fast = alone(robot, stage=PhysicsStage(props=(CubeBody(1.0, 0.0, size=0.4, fixed=True),)))
+    free = alone(robot, stage=PhysicsStage(props=(Cube(1.0, 0.0, size=0.4, mass=5.0),)))
+    fast = alone(robot, stage=PhysicsStage(props=(Cube(1.0, 0.0, size=0.4, fixed=True),)))
     forces = []
     for _ in range(60):
         free.step({0: Twist(0.5, 0.0)})

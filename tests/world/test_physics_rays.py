@@ -9,7 +9,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors.beams import sort_beams, unit_vectors
 from crowdbot.sensors.ray_casting import cast_rays
-from crowdbot.world import CubeBody, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, TableBody, TreeBody, scene_bodies
+from crowdbot.world import Cube, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, Table, Tree, scene_bodies
 
 FAR = 60.0
 ROOM = [[(-7.0, -7.0), (-7.0, 7.0), (7.0, 7.0), (7.0, -7.0)], [(3.0, 3.0), (5.0, 3.0), (5.0, 4.0), (3.0, 4.0)]]
@@ -22,7 +22,7 @@ def world():
     scene = crowded(12, robot, seed=3, size=5.0)
     scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=ROOM).walls)
     stage = PhysicsStage(
-        props=(CubeBody(1.2, 0.0), TableBody(-4.0, 4.0, heading=0.4), CubeBody(-3.0, -4.0, fixed=True, heading=0.3))
+        props=(Cube(1.2, 0.0), Table(-4.0, 4.0, heading=0.4), Cube(-3.0, -4.0, fixed=True, heading=0.3))
     )
     made = PhysicsWorld(scene, ORCA(), {12: robot}, 0.1, stage=stage)
     for _ in range(15):
@@ -125,7 +125,7 @@ def test_skins_and_capsules_are_within_5_cm_of_each_other():
 
 
 def test_trees_and_robots_of_all_kinds_have_bodies():
-    stage = PhysicsStage(props=(TreeBody(3.0, 0.0, height=4.0, crown=1.0),))
+    stage = PhysicsStage(props=(Tree(3.0, 0.0, height=4.0, crown=1.0),))
     for name in ("pepper", "qolo", "wheelchair", "turtlebot2", "differential"):
         world = alone(Robot.load(name), stage=stage)
         seen = world.body_scene()

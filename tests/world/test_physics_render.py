@@ -9,7 +9,7 @@ from physics_worlds import alone, facing
 
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import CubeBody, PhysicsStage, PhysicsWorld, Robot, SceneCamera
+from crowdbot.world import Cube, PhysicsStage, PhysicsWorld, Robot, SceneCamera
 from crowdbot.world.rendering import gl_context
 
 
@@ -19,7 +19,7 @@ def world():
         [[0.0, 0.0], [3.0, 0.0], [3.0, 1.5]], heading=[0.0, math.pi, 0.0], external=[True, False, False],
         goal=[[0.0, 0.0], [3.0, 0.0], [3.0, 1.5]], walls=[[(5.0, -3.0), (5.0, 3.0)]], active=[True, True, False],
     )  # fmt: skip
-    stage = PhysicsStage(props=(CubeBody(3.0, -1.0, size=0.4),), wall_height=2.5)
+    stage = PhysicsStage(props=(Cube(3.0, -1.0, size=0.4),), wall_height=2.5)
     return PhysicsWorld(scene, ORCA(), {0: Robot.load("turtlebot2")}, 0.1, stage=stage)
 
 

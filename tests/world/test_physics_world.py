@@ -15,18 +15,18 @@ from crowdbot.models import ORCA
 from crowdbot.world import (
     AckermannDrive,
     ContactModel,
-    CubeBody,
+    Cube,
     DifferentialDrive,
     JourneyAssignment,
-    LightSource,
+    Light,
     PeopleSource,
     PhysicsStage,
     PhysicsWorld,
     PlanarWorld,
     Robot,
     Router,
-    TableBody,
-    TreeBody,
+    Table,
+    Tree,
     World,
     Zone,
     builtin_robots,
@@ -204,11 +204,9 @@ def test_joints_are_commanded():
 
 def test_props_stand_and_people_walk_around_those_that_stand_fast():
     robot = load("turtlebot2")
-    props = (TableBody(0.0, 0.0, heading=0.3), TreeBody(3.0, 3.0), CubeBody(6.0, 0.0, size=0.5))
+    props = (Table(0.0, 0.0, heading=0.3), Tree(3.0, 3.0), Cube(6.0, 0.0, size=0.5))
     scene = Scene.of([[-3.0, 0.05], [8.0, 8.0]], goal=[[3.0, 0.05], [8.0, 8.0]], external=[False, True])
-    world = PhysicsWorld(
-        scene, ORCA(), {1: robot}, 0.1, stage=PhysicsStage(props=props, lights=(LightSource(0.0, 0.0),))
-    )
+    world = PhysicsWorld(scene, ORCA(), {1: robot}, 0.1, stage=PhysicsStage(props=props, lights=(Light(0.0, 0.0),)))
     nearest = np.inf
     for _ in range(40):
         scene = world.step({1: Twist()})
@@ -220,7 +218,7 @@ def test_props_stand_and_people_walk_around_those_that_stand_fast():
 
 def test_a_person_walks_into_a_cube_and_pushes_it():
     scene = Scene.of([[0.0, 0.0], [9.0, 9.0]], goal=[[5.0, 0.0], [9.0, 9.0]], external=[False, True])
-    stage = PhysicsStage(props=(CubeBody(1.5, 0.0, size=0.4, mass=2.0),))
+    stage = PhysicsStage(props=(Cube(1.5, 0.0, size=0.4, mass=2.0),))
     world = PhysicsWorld(scene, ORCA(), {1: load("turtlebot2")}, 0.1, stage=stage)
     for _ in range(30):
         world.step({1: Twist()})
@@ -256,9 +254,9 @@ def test_what_cannot_be_is_refused():
     refused('has a drive AckermannDrive and no steered wheels; use base="planar"', robots={0: car})
     refused("has no driven wheels", robots={0: dataclasses.replace(robot, wheels=())})
     with pytest.raises(InputError, match='Cube: mass="0.0" must be at least 0.001 kg'):
-        CubeBody(0.0, 0.0, mass=0.0)
+        Cube(0.0, 0.0, mass=0.0)
     with pytest.raises(InputError, match='Light: brightness="2.0" must be at most 1'):
-        LightSource(0.0, 0.0, brightness=2.0)
+        Light(0.0, 0.0, brightness=2.0)
     with pytest.raises(InputError, match="PhysicsStage: wall_height = -1.0 must"):
         PhysicsStage(wall_height=-1.0)
 
@@ -310,7 +308,7 @@ def test_a_crowd_stays_sound_and_memory_does_not_grow(people):
     robot = load("cuybot")
     scene = crowded(people, robot, seed=2, size=9.0)
     scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=[[(-6, -6), (-6, 6), (6, 6), (6, -6)]]).walls)
-    stage = PhysicsStage(props=(CubeBody(2.0, 2.0), TableBody(-4.0, 4.0)))
+    stage = PhysicsStage(props=(Cube(2.0, 2.0), Table(-4.0, 4.0)))
     world = PhysicsWorld(scene, ORCA(), {people: robot}, 0.1, stage=stage, contact=ContactModel())
     draw, used = np.random.default_rng(0), []
     for k in range(150):

@@ -14,7 +14,7 @@ from crowdbot.world import PeopleMotion, Renderer, SceneCamera
 from crowdbot.world.rendering.rasterizer import DrawList, Rasterizer, pack_textures
 from crowdbot.world.rendering.shade_kernels import soften
 from crowdbot.world.rendering.software_visuals import illumination
-from crowdbot.world.stage_appearance import StageAppearance
+from crowdbot.world.stage_appearance import Appearance
 
 GREY = np.full((4, 4, 3), 128, dtype=np.uint8)
 GROUND = np.array([0.5, 0.5, 0.5, 1.0])
@@ -84,7 +84,7 @@ def test_closed_surfaces_show_one_side():
     assert all(np.any(Rasterizer().labels(triangles(item), view, -3)[1] == 0) for item in (wall, turned))
 
 
-def image(drawn, samples=1, shadows=False, look=StageAppearance(), textures=()):  # noqa: B008
+def image(drawn, samples=1, shadows=False, look=Appearance(), textures=()):  # noqa: B008
     pool = pack_textures([GREY, GREY, *textures])
     return Rasterizer().image(drawn, camera(), illumination(look, ()), pool, GROUND, samples, shadows)
 
@@ -99,7 +99,7 @@ def test_antialiasing_gives_the_mean_of_samples():
 
 
 def test_shadows_darken_the_floor_where_the_sun_is_hidden():
-    high = StageAppearance(sun_elevation=math.pi / 2)
+    high = Appearance(sun_elevation=math.pi / 2)
     roof = triangles([[(2.0, -1.0, 0.9), (4.0, -1.0, 0.9), (3.0, 1.5, 0.9)]])
     lit, dark = (image(roof, 1, shadows, high).astype(int) for shadows in (False, True))
     darker = np.any(lit - dark > 20, axis=-1)
@@ -121,7 +121,7 @@ def test_textures_are_seen_where_their_coordinates_say():
 @pytest.mark.parametrize("sky", ["clear", "cloudy", "overcast", "dusk"])
 def test_skies_differ_and_are_brighter_than_nothing(sky):
     drawn = triangles([[(2.0, -0.1, 1.0), (2.0, 0.1, 1.0), (2.0, 0.0, 1.1)]])
-    mine = image(drawn, look=StageAppearance(sky=sky))
+    mine = image(drawn, look=Appearance(sky=sky))
     assert mine[:6].mean() > 40
     if sky != "clear":
         assert np.abs(mine.astype(int) - image(drawn)).mean() > 3
@@ -132,7 +132,7 @@ import hashlib, sys
 sys.path.insert(0, {folder!r})
 import numpy as np
 from test_rasterizer import GREY, GROUND, camera, triangles
-from crowdbot.world.stage_appearance import StageAppearance
+from crowdbot.world.stage_appearance import Appearance
 from crowdbot.world.rendering.software_visuals import illumination
 from crowdbot.world.rendering.rasterizer import Rasterizer, pack_textures
 from crowdbot.world.rendering import rasterizer
@@ -140,7 +140,7 @@ rasterizer.SHADOW_SIZES = 64, 64
 points = np.random.default_rng(5).uniform((1.0, -1.0, 0.0), (4.0, 1.0, 2.0), (6, 3, 3))
 pool = pack_textures([GREY, GREY, np.arange(192, dtype=np.uint8).reshape(8, 8, 3)])
 drawn = triangles(points, (0.9, 0.7, 0.5), 2)
-look = illumination(StageAppearance(sky="cloudy"), ())
+look = illumination(Appearance(sky="cloudy"), ())
 seen = Rasterizer().image(drawn, camera(16, 12), look, pool, GROUND, 4, True)
 print(hashlib.sha256(seen.tobytes()).hexdigest())
 """
@@ -167,12 +167,12 @@ def test_what_is_not_allowed_is_said():
     with pytest.raises(InputError, match=r"SceneCamera: renderer = 'vulkan' must be one of opengl, software"):
         SceneCamera((0, 0, 1), (1, 0, 1), renderer="vulkan")
     with pytest.raises(InputError, match='sun_elevation="0.0" must be at least 0.0872 rad'):
-        StageAppearance(sun_elevation=0.0)
+        Appearance(sun_elevation=0.0)
 
 
 def test_many_samples_are_filtered_as_by_a_lens():
     drawn = triangles([[(3.0, -0.5, 0.6), (3.0, 0.4, 0.7), (3.0, 0.1, 1.5)]])
-    view, light = camera(), illumination(StageAppearance(), ())
+    view, light = camera(), illumination(Appearance(), ())
     pool = pack_textures([GREY, GREY])
     raster = Rasterizer()
     plain = raster.image(drawn, view, light, pool, GROUND, samples=2, shadows=False).astype(int)

@@ -12,7 +12,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors import Lens, RGBCamera
 from crowdbot.world import (
-    CubeBody,
+    Cube,
     DifferentialDrive,
     PeopleMotion,
     PhysicsStage,
@@ -52,7 +52,7 @@ def test_the_plane_looks_like_the_physics_world():
 def test_people_walk_and_robots_drive_in_the_plane():
     scene, robot = plain()
     motion = PeopleMotion(scene, np.array([1]), seed=4)
-    renderer = Renderer(scene, {0: robot}, PhysicsStage(props=(CubeBody(3.0, -2.0),)), motion)
+    renderer = Renderer(scene, {0: robot}, PhysicsStage(props=(Cube(3.0, -2.0),)), motion)
     camera = SceneCamera((0.1, 0.0, 0.6), (1.0, 0.0, 0.7), width=100, height=60, robot=0, detail=2)
     before = renderer.images(camera, rgb=False, segmentation=True).segmentation
     world = PlanarWorld(scene, ORCA(), {0: robot.drive}, 0.1)
@@ -108,7 +108,7 @@ class Optics(NamedTuple):
 def test_a_lens_puts_points_where_it_should(cx):
     """A cube is drawn where the intrinsics say, also with a principal point that is not in the middle."""
     scene = Scene.of([[0.0, 0.0]], external=[True])
-    stage = PhysicsStage(props=(CubeBody(2.1, -0.4, size=0.2),))
+    stage = PhysicsStage(props=(Cube(2.1, -0.4, size=0.2),))
     renderer = Renderer(scene, {0: Robot.load("turtlebot2")}, stage)
     lens = Lens(80, 60, 50.0, 45.0, cx, 20.0)
     camera = Optics(lens)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, stream
-from crowdbot.world import CubeBody, TableBody, TreeBody, quaternion, roll_pitch_yaw
+from crowdbot.world import Cube, Table, Tree, quaternion, roll_pitch_yaw
 from crowdbot.world.urdf.inertia import _round_tensor, _sides, unphysical
 from crowdbot.world.urdf.shapes import Box, Capsule, ConvexPiece, Cylinder, Sphere, together
 from crowdbot.world.urdf.transforms import across, axis_rotation, frame, from_quaternion, transform_points
@@ -148,7 +148,7 @@ def numbers(text: str) -> list[float]:
 
 
 def test_a_tree_is_a_trunk_that_stops_people_and_a_crown_that_does_not() -> None:
-    tree = TreeBody(1.0, 2.0, height=5.0, trunk=0.2, crown=1.5)
+    tree = Tree(1.0, 2.0, height=5.0, trunk=0.2, crown=1.5)
     parts = geoms(tree.body("oak"))
     assert set(parts) == {"oak/0", "oak/1"}
     radius, half = numbers(parts["oak/0"]["size"])
@@ -164,13 +164,13 @@ def test_a_tree_is_a_trunk_that_stops_people_and_a_crown_that_does_not() -> None
 
 
 def test_a_default_tree_has_a_trunk_of_0_15_m() -> None:
-    ring = TreeBody(0.0, 0.0).outline()
+    ring = Tree(0.0, 0.0).outline()
     assert ring is not None
     np.testing.assert_allclose(np.ptp(ring, axis=0), [0.3, 0.3])
 
 
-@pytest.mark.parametrize("prop", [CubeBody(1.0, 2.0), TableBody(1.0, 2.0), TreeBody(1.0, 2.0)])
-def test_props_stand_where_they_are_put(prop: CubeBody | TableBody | TreeBody) -> None:
+@pytest.mark.parametrize("prop", [Cube(1.0, 2.0), Table(1.0, 2.0), Tree(1.0, 2.0)])
+def test_props_stand_where_they_are_put(prop: Cube | Table | Tree) -> None:
     element = prop.body("it")
     assert numbers(element.attributes["pos"])[:2] == [1.0, 2.0]
     assert geoms(element)
@@ -190,4 +190,4 @@ def test_props_stand_where_they_are_put(prop: CubeBody | TableBody | TreeBody) -
 )
 def test_props_without_a_size_are_refused(values: dict[str, float], message: str) -> None:
     with pytest.raises(InputError, match=message):
-        TreeBody(**{"x": 0.0, "y": 0.0, **values})
+        Tree(**{"x": 0.0, "y": 0.0, **values})

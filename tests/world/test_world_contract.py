@@ -11,7 +11,7 @@ from crowdbot.models import ORCA
 
 DRIVES = builtin_classes(room, room.Drive)
 WORLDS = builtin_classes(room, room.World)
-STAGE = room.PhysicsStage(props=(room.CubeBody(0.0, 3.0, size=0.4, fixed=True),))
+STAGE = room.PhysicsStage(props=(room.Cube(0.0, 3.0, size=0.4, fixed=True),))
 
 
 @pytest.mark.parametrize("kind", DRIVES.values(), ids=list(DRIVES))

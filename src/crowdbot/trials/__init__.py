@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from crowdbot.trials.variants import add_element as add_element
     from crowdbot.trials.variants import needs_trust as needs_trust
     from crowdbot.trials.variants import remove_element as remove_element
+    from crowdbot.world import ContactModel as ContactModel
     from crowdbot.world import Cube as Cube
     from crowdbot.world import Direction as Direction
     from crowdbot.world import Door as Door
@@ -48,7 +49,6 @@ if TYPE_CHECKING:
     from .cameras.camera import Camera as Camera
     from .cameras.camera import overview as overview
     from .cameras.camera_remarks import camera_remarks as camera_remarks
-    from .crowd import ContactSpec as ContactSpec
     from .crowd import Crowd as Crowd
     from .crowd import Crowds as Crowds
     from .crowd import Limits as Limits

@@ -104,10 +104,6 @@ class Routing:
         return world.Router.of(walls, self.radius, self.unreachable)
 
 
-ContactSpec = world.ContactModel
-"""Name of the element."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Limits:
     """Limits of speed and acceleration of people, applied after the crowd model."""

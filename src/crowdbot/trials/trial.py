@@ -13,11 +13,11 @@ import numpy as np
 from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, InputError, Path2D, draw_svg
 from crowdbot.core.fields import attribute, check, child, children
 from crowdbot.models import CrowdModel
-from crowdbot.world import Exit, Portal
+from crowdbot.world import ContactModel, Exit, Portal
 
 from .agent import Agent, Avatar
 from .cameras.camera import Camera
-from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
+from .crowd import Crowd, Crowds, Limits, Routing
 from .ground.plan import floor_plan
 from .journey import Journey
 from .people import SourceSpec, Spawner
@@ -151,7 +151,7 @@ class Trial:
     stage: Stage = child(Stage, about="stage: walls, obstacles and the walkable area")
     routing: Routing | None = child(None, about="routing around walls")
     crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="crowd models", min=1, max=20)
-    contact: ContactSpec | None = child(None, about="contact between people")
+    contact: ContactModel | None = child(None, about="contact between people")
     limits: Limits | None = child(None, about="limits of speed and acceleration")
     journeys: tuple[Journey, ...] = children("journey", about="sequences of stops", max=1000)
     agents: tuple[Agent, ...] = children("agent", about="single people", max=20_000)

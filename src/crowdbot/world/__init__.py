@@ -84,15 +84,11 @@ if TYPE_CHECKING:
     from .physics.people_motion import PeopleMotion as PeopleMotion
     from .physics.scenery import add_rings as add_rings
     from .physics.stage import Cube as Cube
-    from .physics.stage import CubeBody as CubeBody
     from .physics.stage import Light as Light
-    from .physics.stage import LightSource as LightSource
     from .physics.stage import PhysicsStage as PhysicsStage
     from .physics.stage import PropBody as PropBody
     from .physics.stage import Table as Table
-    from .physics.stage import TableBody as TableBody
     from .physics.stage import Tree as Tree
-    from .physics.stage import TreeBody as TreeBody
     from .physics.world import PhysicsWorld as PhysicsWorld
     from .planar import PlanarWorld as PlanarWorld
     from .planar_environments import planar_world as planar_world
@@ -130,7 +126,6 @@ if TYPE_CHECKING:
     from .stage_appearance import SKIES as SKIES
     from .stage_appearance import WALL_SURFACES as WALL_SURFACES
     from .stage_appearance import Appearance as Appearance
-    from .stage_appearance import StageAppearance as StageAppearance
     from .urdf import RobotModel as RobotModel
     from .urdf import describe as describe
     from .urdf import read_mesh as read_mesh

@@ -51,7 +51,3 @@ class Appearance:
             heading if free else self.sun_heading,
             height if free else self.sun_elevation,
         )
-
-
-StageAppearance = Appearance
-"""Name of the class in worlds."""

@@ -305,9 +305,9 @@ class World(ABC):
             InputError: another prop has this name.
 
         >>> from crowdbot.models import ORCA
-        >>> from crowdbot.world import CubeBody, PlanarWorld
+        >>> from crowdbot.world import Cube, PlanarWorld
         >>> world = PlanarWorld(Scene.of([[3.0, 0.0]]), ORCA(), {}, dt=0.1)
-        >>> name = world.add_prop(CubeBody(1.0, 1.0, fixed=True), "box")
+        >>> name = world.add_prop(Cube(1.0, 1.0, fixed=True), "box")
         >>> len(world.scene.walls)
         4
         >>> world.remove_prop("box")

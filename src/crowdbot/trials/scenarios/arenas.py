@@ -16,12 +16,12 @@ import math
 from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.builtin_names import TITLES
-from crowdbot.trials.crowd import ContactSpec, Routing
+from crowdbot.trials.crowd import Routing
 from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Obstacle, Stage
 from crowdbot.trials.trial import RobotSpec, Trial
-from crowdbot.world import Zone
+from crowdbot.world import ContactModel, Zone
 
 from .crowds import circle_crossing
 from .parts import STILL, box, number, robot, scenario, uniform
@@ -82,7 +82,7 @@ def corner_traffic(people: int, width: float, length: float) -> Trial:
         max(60.0, 5.0 * length),
         Stage(walkable=ground),
         routing=Routing(radius=0.3),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[
             Journey(name="round", stops=(Zone(turn), Zone(box(-far + 0.3, -inside, -far + 1.3, inside), aim="random")))
         ],
@@ -102,7 +102,7 @@ def block(people: int, size: float) -> Trial:
         60.0,
         Stage(walkable=box(-10, -5, 10, 5), obstacles=(Obstacle(box(-1.5, -size / 2.0, 1.5, size / 2.0)),)),
         routing=Routing(radius=0.3),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         spawners=[Spawner(name="people", count=people, zone=box(3, -4, 9.5, 4), goal=box(-9.5, -4, -8, 4))],
         robots=[robot((-7.0, size / 4.0), goal)],
     )
@@ -125,7 +125,7 @@ def four_blocks(people: int, passage: float) -> Trial:
             obstacles=tuple(Obstacle(corner(x, y, near, far)) for x, y in corners.values()),
         ),
         routing=Routing(radius=0.3),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         spawners=[
             Spawner(
                 name=name,
@@ -178,7 +178,7 @@ def crowd_against_crowd(people: int, angle: float, formation: bool) -> Trial:
         "crowd-against-crowd",
         60.0,
         Stage(),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         spawners=crowds,
         agents=ranks,
         robots=[robot((x, y), (-x, -y))],

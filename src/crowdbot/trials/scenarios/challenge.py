@@ -14,12 +14,12 @@ import functools
 import math
 
 from crowdbot.trials.builtin_names import FLOWS, SIZES, TITLES
-from crowdbot.trials.crowd import ContactSpec, Limits
+from crowdbot.trials.crowd import Limits
 from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import End, RobotSpec, Trial
-from crowdbot.world import Portal, Zone
+from crowdbot.world import ContactModel, Portal, Zone
 
 from .crowds import DEEP, ends
 from .parts import box, corridor, number, robot, scenario, uniform
@@ -70,7 +70,7 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
         f"challenge-{kind}-{people}" if kind else "challenge-alone",
         180.0,
         Stage() if crossing else corridor(LENGTH + 12.0, WIDTH),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         limits=Limits(max_speed=3.0, max_acceleration=acceleration if math.isfinite(acceleration) else None),
         journeys=[Journey(name=way, then="stay", stops=(JOURNEYS[way],)) for way in ways],
         spawners=[

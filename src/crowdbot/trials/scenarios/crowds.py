@@ -13,13 +13,13 @@ from typing import Any
 from crowdbot.core.fields import Points
 from crowdbot.models import ORCA
 from crowdbot.trials.builtin_names import TITLES
-from crowdbot.trials.crowd import ContactSpec, Routing
+from crowdbot.trials.crowd import Routing
 from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
-from crowdbot.world import Direction, Exit, Omnidirectional, Portal, Zone
+from crowdbot.world import ContactModel, Direction, Exit, Omnidirectional, Portal, Zone
 
 from .parts import box, corridor, flow, number, pairs, robot, scenario
 from .preset import Preset, PresetOption, ScenarioCard
@@ -62,7 +62,7 @@ def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: flo
         name,
         90.0,
         corridor(LENGTH + 10.0, width),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(LENGTH, width),
@@ -103,7 +103,7 @@ def density_ladder(density: float) -> Trial:
         "density-ladder",
         60.0,
         corridor(30.0, 5.0),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(20.0, 5.0),
@@ -123,7 +123,7 @@ def crossing(density: float, both: bool) -> Trial:
         60.0,
         Stage(walls=(Wall(Points.of([(-6.5, -10), (-6.5, -2)])), Wall(Points.of([(-6.5, 2), (-6.5, 10)])),
                      Wall(Points.of([(6.5, -10), (6.5, -2)])), Wall(Points.of([(6.5, 2), (6.5, 10)])))),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[SOUTH, NORTH],
         spawners=[flow(way, count, box(-5.7, -5.7, 5.7, 5.7), way) for way in ways if count],
         portals=[low, high],
@@ -218,7 +218,7 @@ def random_goals(people: int, side: float) -> Trial:
         "random-goals",
         90.0,
         Stage(walkable=box(-h, -h, h, h)),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[Journey(name="about", then="again", stops=(Zone(inside, aim="random"),))],
         spawners=[Spawner(name="people", count=people, zone=inside, journey="about")],
         robots=[robot((-h + 1.0, -h + 1.0), (h - 1.0, h - 1.0))],
@@ -231,7 +231,7 @@ def robot_crowding(people: int, curious: float) -> Trial:
         "robot-crowding",
         60.0,
         Stage(walkable=box(-8, -8, 8, 8)),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[Journey(name="about", then="again", stops=(Zone(box(-5, -5, 5, 5), aim="random"),))],
         spawners=[
             Spawner(
@@ -260,7 +260,7 @@ def bottleneck(door: float, rate: float) -> Trial:
         ),
         routing=Routing(radius=min(0.3, half - 0.05)),
         crowd=ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=0.5),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=[
             Journey(
                 name="through",

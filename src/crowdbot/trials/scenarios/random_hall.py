@@ -15,13 +15,13 @@ from numpy.random import Generator
 from crowdbot.core import stream
 from crowdbot.core.fields import Points
 from crowdbot.trials.builtin_names import TITLES
-from crowdbot.trials.crowd import ContactSpec, Routing
+from crowdbot.trials.crowd import Routing
 from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import Planner
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
-from crowdbot.world import Zone
+from crowdbot.world import ContactModel, Zone
 
 from .parts import box, robot, scenario
 from .preset import Preset, PresetOption
@@ -181,7 +181,7 @@ def random_hall(
         60.0 + 3 * sum(whole) // 100,
         Stage(walkable=hall.points(), walls=tuple(walls), obstacles=tuple(Obstacle(item.points()) for item in solid)),
         routing=Routing(radius=0.3),
-        contact=ContactSpec(),
+        contact=ContactModel(),
         journeys=journeys,
         spawners=[spawner for spawner in spawners if spawner.count],
         robots=[dataclasses.replace(robot(ends[0], ends[1]), planner=Planner())],

@@ -215,10 +215,6 @@ class Light:
         return Element("light", values | {"castshadow": str(self.shadows).lower()})
 
 
-CubeBody, TableBody, TreeBody, LightSource = Cube, Table, Tree, Light
-"""Names of the classes in worlds."""
-
-
 @dataclass(frozen=True)
 class PhysicsStage:
     """Properties of a stage besides the walls of its scene.
