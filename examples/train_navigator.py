@@ -1,12 +1,14 @@
-"""Train the navigator ``policy`` with PPO of stable-baselines3 in crowds of 5 to 20 people.
+"""Train the navigators ``policy`` and ``attention-policy`` with PPO of stable-baselines3 in crowds.
 
     pip install 'crowdbot[gym]' stable-baselines3
     python train_navigator.py --out weights
+    python train_navigator.py --network attention --out weights
     crowdbot evaluate crowdnav-circle-5 --navigators "orca, policy file=weights/policy.npz" --seeds 0:200
 
-The policy has the layers of the navigator: two for each person, whose outputs are pooled by their maximum, and three
-for the action, a velocity in the frame of the goal. ``weights/policy.npz`` has the weights, and ``weights/model.zip``
-the model of stable-baselines3 with its value and optimiser. Ctrl-C ends the training early and keeps both.
+The network is that of the navigator: two layers for each person, whose outputs are pooled by their maximum or weighed
+by attention, and three for the action, a velocity in the frame of the goal. ``weights/policy.npz`` or
+``weights/attention-policy.npz`` has the weights, and ``weights/model.zip`` the model of stable-baselines3 with its value
+and optimiser. Ctrl-C ends the training early and keeps both.
 """
 
 import argparse
@@ -25,12 +27,29 @@ from stable_baselines3.common.vec_env import VecEnv
 from train_with_stable_baselines3 import OUTCOMES, CrowdVecEnv, OutcomeTable
 
 from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
-from crowdbot.gym import ObservationForm, Reward
-from crowdbot.navigation import LAYERS, OWN_VALUES, PERSON_VALUES, PolicyWeights, policy_inputs
+from crowdbot.gym import ActionForm, ObservationForm, Reward
+from crowdbot.navigation import (
+    FACING_VALUES,
+    LAYERS,
+    MOST_ATTENDED,
+    OWN_VALUES,
+    PERSON_VALUES,
+    WALL_DIRECTIONS,
+    AttentionWeights,
+    PolicyWeights,
+    attention_inputs,
+    goal_frame_twists,
+    policy_inputs,
+)
 from crowdbot.trials import load_trial
 
 MAX_PEOPLE = 20
-TRIALS = "crowdnav-circle-5, crowdnav-circle-10, crowdnav-square-10 people=8, crowdnav-circle-20 radius=6"
+CROSSINGS = "crowdnav-circle-5, crowdnav-circle-10, crowdnav-square-10 people=8, crowdnav-circle-20 radius=6"
+WALLED = (
+    "crowdnav-circle-20, frontal, doorway, entering-room, corner-traffic, block, four-blocks, perpendicular-flow, "
+    "random-hall layout=1"
+)
+TRIALS = {"pooled": CROSSINGS, "attention": f"{CROSSINGS}, {WALLED}"}
 REWARD = Reward(success=1.0, collision=-1.0, discomfort_distance=0.2, discomfort=1.0, progress=0.1)
 FIRST_CASE = 2**31 + 1000
 """Smallest seed of the cases of the test; the seeds that a training draws are below 2**31."""
@@ -38,49 +57,64 @@ FIRST_CASE = 2**31 + 1000
 
 @dataclasses.dataclass(frozen=True)
 class PolicyObservation(ObservationForm):
-    """The inputs of the navigator ``policy``, and cosine and sine of the goal frame from the heading (``turn``)."""
+    """The inputs of a navigator; ``known`` keeps what the robots of the environments know."""
 
-    max_people: int = MAX_PEOPLE
+    network: str = "pooled"
+    known: dict = dataclasses.field(default_factory=dict)
 
     def shapes(self, beams):
-        people = (self.max_people, len(PERSON_VALUES))
-        return {"own": (len(OWN_VALUES),), "people": people, "present": (1,), "turn": (2,)}
+        if self.network == "pooled":
+            return {"own": (len(OWN_VALUES),), "people": (MAX_PEOPLE, len(PERSON_VALUES)), "present": (1,)}
+        own, people = len(OWN_VALUES) + len(FACING_VALUES), (MOST_ATTENDED, len(PERSON_VALUES))
+        return {"own": (own,), "people": people, "present": (1,), "walls": (WALL_DIRECTIONS,)}
 
     def bounds(self, name, longest):
         return -np.full(1, np.inf), np.full(1, np.inf)
 
     def arrays(self, batch, scan):
-        found = policy_inputs(batch, self.max_people)
-        cos, sin = np.cos(batch.pose[:, 2]), np.sin(batch.pose[:, 2])
-        x, y = found.axis.T
-        turn = np.stack([cos * x + sin * y, cos * y - sin * x], axis=1)
-        parts = {"own": found.own, "people": found.people, "present": found.present[:, None], "turn": turn}
+        found = policy_inputs(batch, MAX_PEOPLE) if self.network == "pooled" else attention_inputs(batch)
+        parts = found._asdict()
+        self.known.update(batch=batch, axis=parts.pop("axis"))
+        parts["present"] = found.present[:, None]
         return {name: value.astype(np.float32) for name, value in parts.items()}
+
+
+@dataclasses.dataclass(frozen=True)
+class GoalFrameAction(ActionForm):
+    """Velocities in the goal frame, as shares of the maximum speed, that the drive realises as for the navigator."""
+
+    form: str = "holonomic"
+    known: dict = dataclasses.field(default_factory=dict)
+    horizon: float = 0.0
+
+    def twists(self, actions, limits, twist=None, dt=0.0):
+        shares, out = np.array(actions, np.float64), np.zeros((len(actions), 3))
+        batch, every = self.known["batch"], np.ones(len(actions), np.bool_)
+        goal_frame_twists(batch, every, self.known["axis"], shares, out, horizon=self.horizon)
+        return out
 
 
 class GoalFrame(VecEnv):
     """Environments of several trials, whose actions are shares of the maximum speed in the frame of the goal."""
 
-    def __init__(self, trials, num_envs):
+    def __init__(self, trials, num_envs, network="pooled"):
         each = max(1, num_envs // len(trials))
-        options = {"observation": PolicyObservation(), "action": "holonomic", "reward": REWARD}
-        self.parts = [CrowdVecEnv(load_trial(name, values), each, **options) for name, values in trials]
-        self.turn = None
+        self.parts = []
+        for name, values in trials:
+            seen = PolicyObservation(network=network)
+            action = GoalFrameAction(known=seen.known, horizon=0.0 if network == "pooled" else 1.0)
+            options = {"observation": seen, "action": action, "reward": REWARD}
+            self.parts.append(CrowdVecEnv(load_trial(name, values), each, **options))
         super().__init__(each * len(trials), self.parts[0].observation_space, spaces.Box(-1.0, 1.0, (2,), np.float32))
 
     def _join(self, observations):
-        joined = {name: np.concatenate([part[name] for part in observations]) for name in observations[0]}
-        self.turn = joined["turn"]
-        return joined
+        return {name: np.concatenate([part[name] for part in observations]) for name in observations[0]}
 
     def reset(self):
         return self._join([part.reset() for part in self.parts])
 
     def step_async(self, actions):
-        x, y = (actions / np.maximum(1.0, np.linalg.norm(actions, axis=1, keepdims=True))).T
-        cos, sin = self.turn.T
-        turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
-        for part, action in zip(self.parts, np.split(turned, len(self.parts)), strict=True):
+        for part, action in zip(self.parts, np.split(actions, len(self.parts)), strict=True):
             part.step_async(action)
 
     def step_wait(self):
@@ -133,9 +167,30 @@ class PooledPeople(BaseFeaturesExtractor):
         return torch.cat([(found * there).amax(dim=1), own], dim=1)
 
 
-def make_model(envs, length, seed):
+class AttendedPeople(BaseFeaturesExtractor):
+    """Embeddings of people, weighed by attention, then the values of the robot and the walls."""
+
+    def __init__(self, observation_space):
+        super().__init__(observation_space, AttentionWeights.widths()["action1"][0])
+        for name in ("person1", "person2", "score1", "score2"):
+            setattr(self, name, torch.nn.Linear(*AttentionWeights.widths()[name]))
+
+    def forward(self, observations):
+        own, people, present, walls = (observations[name] for name in ("own", "people", "present", "walls"))
+        count = people.shape[1]
+        both = torch.cat([people, own[:, None].expand(-1, count, -1)], dim=2)
+        there = torch.arange(count)[None, :, None] < present[:, None]
+        found = torch.relu(self.person2(torch.relu(self.person1(both)))) * there
+        mean = found.sum(dim=1, keepdim=True) / present[:, None].clamp(min=1)
+        score = self.score2(torch.relu(self.score1(torch.cat([found, mean.expand(-1, count, -1)], dim=2))))
+        weight = torch.softmax(score.masked_fill(~there, -1e9), dim=1)
+        return torch.cat([(weight * found).sum(dim=1), own, walls], dim=1)
+
+
+def make_model(envs, length, seed, network="pooled"):
     """Return PPO with the network of the navigator; ``length`` is the number of steps between two updates."""
-    _, pooled, wide = LAYERS
+    kind, extractor = NETWORKS[network]
+    wide = kind.widths()["action2"][0]
     model = PPO(
         "MultiInputPolicy",
         envs,
@@ -146,8 +201,8 @@ def make_model(envs, length, seed):
         seed=seed,
         device="cpu",
         policy_kwargs={
-            "features_extractor_class": PooledPeople,
-            "net_arch": {"pi": [wide, wide], "vf": [pooled]},
+            "features_extractor_class": extractor,
+            "net_arch": {"pi": [wide, wide], "vf": [64]},
             "activation_fn": torch.nn.ReLU,
             "log_std_init": float(np.log(0.6)),
         },
@@ -157,15 +212,18 @@ def make_model(envs, length, seed):
     return model
 
 
-def policy_weights(model):
+def network_weights(model):
     """Return the weights of the navigator."""
     policy = model.policy
-    layers = [policy.features_extractor.person1, policy.features_extractor.person2]
+    kind = next(kind for kind, extractor in NETWORKS.values() if isinstance(policy.features_extractor, extractor))
+    layers = [layer for layer in policy.features_extractor.children() if isinstance(layer, torch.nn.Linear)]
     layers += [layer for layer in policy.mlp_extractor.policy_net if isinstance(layer, torch.nn.Linear)]
-    arrays = []
-    for layer in [*layers, policy.action_net]:
-        arrays += [layer.weight.detach().numpy().T.copy(), layer.bias.detach().numpy().copy()]
-    return PolicyWeights(*arrays)
+    arrays = [(layer.weight.detach().numpy().T, layer.bias.detach().numpy()) for layer in [*layers, policy.action_net]]
+    return kind.of_layers(dict(zip(kind.widths(), arrays, strict=True)))
+
+
+NETWORKS = {"pooled": (PolicyWeights, PooledPeople), "attention": (AttentionWeights, AttendedPeople)}
+"""Weights of the navigator, and the part of the network before the layers of the action."""
 
 
 def parse_trials(text):
@@ -176,30 +234,32 @@ def parse_trials(text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", default=TRIALS, help=f"trials with values, separated by commas (default: {TRIALS})")
+    parser.add_argument("--network", choices=NETWORKS, default="pooled", help="of policy, or of attention-policy")
+    parser.add_argument("--trials", help="trials with values, separated by commas (default: TRIALS of the network)")
     parser.add_argument("--steps", type=int, default=1_500_000)
     parser.add_argument("--environments", type=int, default=256)
     parser.add_argument("--cases", type=int, default=200, help="number of unseen cases of each trial")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path, default=Path("weights"), help="folder of policy.npz and model.zip")
+    parser.add_argument("--out", type=Path, default=Path("weights"), help="folder of the weights and of model.zip")
     options = parser.parse_args()
     torch.set_num_threads(1)  # small networks: more threads only wait for each other
-    trials = parse_trials(options.trials)
-    envs = GoalFrame(trials, options.environments)
-    model = make_model(envs, max(2, min(32, options.steps // envs.num_envs)), options.seed)
+    trials = parse_trials(options.trials or TRIALS[options.network])
+    envs = GoalFrame(trials, options.environments, options.network)
+    model = make_model(envs, max(2, min(8192, options.steps) // envs.num_envs), options.seed, options.network)
     try:
-        model.learn(options.steps, callback=OutcomeTable(updates=20 if model.n_steps == 32 else 1))
+        model.learn(options.steps, callback=OutcomeTable(updates=20 if options.steps > 200_000 else 1))
     except KeyboardInterrupt:
         print("the training ends early")
     options.out.mkdir(parents=True, exist_ok=True)
     model.save(options.out / "model.zip")
-    file = options.out / "policy.npz"
+    weights = network_weights(model)
+    file = options.out / f"{weights.navigator}.npz"
     command = shlex.join(["python", Path(sys.argv[0]).name, *sys.argv[1:]])
-    policy_weights(model).save(file, {"command": command, "steps": model.num_timesteps})
+    weights.save(file, {"command": command, "steps": model.num_timesteps})
     print(f"{model.num_timesteps} steps, {time.process_time():.0f} s of processor time, weights in {file}")
     plan = EvaluationPlan(
         [dataclasses.replace(load_trial(name, values), name=f"{name}-{k}") for k, (name, values) in enumerate(trials)],
-        parse_methods(f"policy file={file}"),
+        parse_methods(f"{weights.navigator} file={file}"),
         seeds=range(FIRST_CASE, FIRST_CASE + options.cases),
     )
     for cell in evaluate(plan).cells:

@@ -40,6 +40,7 @@ def meeting(people=(), **changes):
 def test_the_room_shows_its_contracts():
     names = {"dynamic-window", "external", "mpc", "orca", "potential-field", "rds", "social-force", "straight"}
     names |= {
+        "attention-policy",
         "follower",
         "mppi",
         "policy",
@@ -83,16 +84,22 @@ class TestEveryNavigator:
         seen = meeting([(2.0, 0.3, -1.0, 0.0), (1.0, -2.0, 0.0, 1.0)], twist=Twist(0.6, 0.1))
         assert kind().act(seen) == kind().act(seen)
 
-    def test_mirrors_what_is_mirrored(self, kind):
-        left = kind().act(meeting([(2.5, 0.3, -1.0, 0.0)], twist=Twist(0.8), goal=(9.0, 1.0)))
-        right = kind().act(meeting([(2.5, -0.3, -1.0, 0.0)], twist=Twist(0.8), goal=(9.0, -1.0)))
-        assert left.forward == pytest.approx(right.forward, abs=1e-9)
-        assert left.turn == pytest.approx(-right.turn, abs=1e-9)
-
     @pytest.mark.parametrize("speed", [0.0, -1.0, math.nan, math.inf])
     def test_explains_a_wrong_speed(self, kind, speed):
         with pytest.raises(InputError, match=f"{kind.__name__}: speed = {speed}"):
             kind(speed=speed)
+
+
+SYMMETRIC = {name: kind for name, kind in NAVIGATORS.items() if kind is not navigation.AttentionPolicyNavigator}
+"""A network trained by chance prefers a side; that of ``policy`` decides nothing in this meeting."""
+
+
+@pytest.mark.parametrize("kind", SYMMETRIC.values(), ids=list(SYMMETRIC))
+def test_a_navigator_mirrors_what_is_mirrored(kind):
+    left = kind().act(meeting([(2.5, 0.3, -1.0, 0.0)], twist=Twist(0.8), goal=(9.0, 1.0)))
+    right = kind().act(meeting([(2.5, -0.3, -1.0, 0.0)], twist=Twist(0.8), goal=(9.0, -1.0)))
+    assert left.forward == pytest.approx(right.forward, abs=1e-9)
+    assert left.turn == pytest.approx(-right.turn, abs=1e-9)
 
 
 def test_straight_is_blind():

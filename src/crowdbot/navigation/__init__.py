@@ -15,9 +15,19 @@ from .observation import DISC, DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator
 from .path_planner import PathPlanner, Waypoints
+from .planners.attention_policy import (
+    ATTENTION_LAYERS,
+    FACING_VALUES,
+    MOST_ATTENDED,
+    WALL_DIRECTIONS,
+    AttentionInputs,
+    AttentionPolicyNavigator,
+    AttentionWeights,
+    attention_inputs,
+)
 from .planners.driving_support import RDSNavigator
 from .planners.elastic_band import TimeElasticBandNavigator
-from .planners.learned_policy import PolicyInputs, PolicyNavigator, policy_inputs
+from .planners.learned_policy import PolicyInputs, PolicyNavigator, goal_frame_twists, policy_inputs
 from .planners.model_predictive import MPCNavigator
 from .planners.path_integral import MPPINavigator
 from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
@@ -35,12 +45,19 @@ from .wrappers.safety_layer import SafetyLayer, SafetyState
 from .wrappers.scan_map import ScanMapNavigator
 
 __all__ = [
+    "ATTENTION_LAYERS",
     "DISC",
+    "FACING_VALUES",
     "LAYERS",
+    "MOST_ATTENDED",
     "OWN_VALUES",
     "PERSON_VALUES",
+    "WALL_DIRECTIONS",
     "Action",
     "AgentsInView",
+    "AttentionInputs",
+    "AttentionPolicyNavigator",
+    "AttentionWeights",
     "Decisions",
     "DriveLimits",
     "DynamicWindowNavigator",
@@ -76,10 +93,12 @@ __all__ = [
     "VisiblePeople",
     "Waypoints",
     "WindowCosts",
+    "attention_inputs",
     "call_within",
     "check_navigator",
     "copy_memory",
     "dynamic_window_twist",
+    "goal_frame_twists",
     "policy_file",
     "policy_inputs",
 ]

@@ -1,4 +1,4 @@
-"""The learned policy as a navigator, within the limits of the drive."""
+"""Learned navigators: networks whose velocities are realised within the limits of the drive, and the learned policy."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crowdbot.navigation.wall_arrays import wall_arrays
 from crowdbot.typing import Bools, Floats
 
 from .policy_kernels import OWN_VALUES, PERSON_VALUES, apply_network, avoid_contacts, limit_velocities, write_inputs
-from .policy_weights import read_policy
+from .policy_weights import PolicyWeights, read_layers
 
 MOST_PEOPLE = 20
 """Number of nearest people that the policy knows."""
@@ -73,8 +73,104 @@ def policy_inputs(
     return inputs
 
 
+def goal_frame_twists(
+    batch: ObservationBatch,
+    asking: NDArray[np.bool_],
+    axis: Floats,
+    shares: Floats,
+    out: Floats,
+    speed: float = np.inf,
+    horizon: float = 0.0,
+    margin: float = 0.15,
+) -> None:
+    """Write the twists ``[N, 3]`` of velocities in the goal frame, within the limits of the drive.
+
+    Args:
+        batch: what the robot knows in N environments.
+        asking: ``[N]`` rows to fill.
+        axis: ``[N, 2]`` x axis of the goal frame, in the world.
+        shares: ``[N, 2]`` velocities as shares of the maximum speed; they become velocities in the world [m/s].
+        out: ``[N, 3]`` twists.
+        speed: largest speed [m/s], limited by the drive.
+        horizon, margin: see :class:`LearnedNavigator`.
+
+    >>> from crowdbot.navigation import DriveLimits
+    >>> batch = ObservationBatch(pose=np.zeros((1, 3)), goal=np.array([[0.0, 4.0]]), radius=np.full(1, 0.3),
+    ...     limits=DriveLimits(1.0, 2.0, holonomic=True), dt=0.1)
+    >>> out, aside = np.zeros((1, 3)), np.array([[0.5, 0.0]])
+    >>> goal_frame_twists(batch, np.ones(1, np.bool_), np.array([[0.0, 1.0]]), aside, out)
+    >>> out.round(2).tolist()
+    [[0.05, 2.0, 0.5]]
+    """
+    numbers = drive_numbers(batch.limits, speed)
+    limit_velocities(asking, batch.pose, batch.goal, batch.waypoint, axis, numbers, shares)
+    if not batch.limits.holonomic or len(wall_arrays(batch.walls).segments):
+        dynamic_window_twists(batch, asking, shares, speed, out)
+        return
+    if horizon > 0.0:
+        people = batch.people
+        avoid_contacts(
+            asking, batch.pose, batch.radius, people.position, people.velocity, people.radius, people.seen,
+            float(numbers[0]), horizon, margin, shares,
+        )  # fmt: skip
+    holonomic_twists(asking, batch.pose, shares, numbers, float(batch.dt), out)
+
+
 @dataclass(frozen=True)
-class PolicyNavigator(Navigator):
+class LearnedNavigator(Navigator):
+    """A network that returns a velocity in the goal frame, in a batch of environments.
+
+    Fields:
+        speed: largest speed [m/s], limited by the drive.
+        horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
+        margin: clearance to people that is kept for this time [m].
+        file: file of weights from ``examples/train_navigator.py`` (default: the weights of the package).
+
+    Raises:
+        InputError: a number is out of its range.
+    """
+
+    speed: float = 1.0
+    horizon: float = 1.0
+    margin: float = 0.15
+    file: str = ""
+
+    def __post_init__(self) -> None:
+        kind = type(self).__name__
+        check_number(kind, "speed", self.speed, "m/s", exclusive_min=0.0)
+        check_number(kind, "horizon", self.horizon, "s", min=0.0)
+        check_number(kind, "margin", self.margin, "m", exclusive_min=0.0)
+
+    def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """Return the x axis of the goal frame ``[N, 2]`` and the velocities in it ``[N, 2]``.
+
+        Velocities are shares of the maximum speed; only rows of asking environments count.
+        """
+        raise NotImplementedError
+
+    def act(self, observation: Observation) -> Twist:
+        out, asking = np.zeros((1, 3)), np.ones(1, np.bool_)
+        self._move(_as_batch(observation), asking, out)
+        return Twist(*out[0].tolist())
+
+    def _kernels(self) -> BatchKernels | None:
+        return self._decided if self._keeps(LearnedNavigator, "act") else None
+
+    def _decided(self, batch: ObservationBatch, out: Floats) -> Bools:
+        """Write the twists of the environments with regular values, and return which they are."""
+        asking = rows_for_kernels(batch, with_people=True)
+        if asking.any():
+            self._move(batch, asking, out)
+        return asking
+
+    def _move(self, batch: ObservationBatch, asking: NDArray[np.bool_], out: Floats) -> None:
+        """Write the twists ``[N, 3]`` of the asking environments."""
+        axis, shares = self.shares(batch, asking)
+        goal_frame_twists(batch, asking, axis, shares, out, self.speed, self.horizon, self.margin)
+
+
+@dataclass(frozen=True)
+class PolicyNavigator(LearnedNavigator):
     """Moves as a small neural network that was trained in simulated crowds by reinforcement learning.
 
     The network knows the nearest 20 people within 10 m, with their velocities and radii, and returns a velocity; with
@@ -106,49 +202,12 @@ class PolicyNavigator(Navigator):
         "Schulman et al.", 2017, "Proximal policy optimization algorithms", "arXiv", "10.48550/arXiv.1707.06347"
     )
 
-    speed: float = 1.0
-    horizon: float = 1.0
-    margin: float = 0.15
-    file: str = ""
-
-    def __post_init__(self) -> None:
-        check_number("PolicyNavigator", "speed", self.speed, "m/s", exclusive_min=0.0)
-        check_number("PolicyNavigator", "horizon", self.horizon, "s", min=0.0)
-        check_number("PolicyNavigator", "margin", self.margin, "m", exclusive_min=0.0)
-
-    def act(self, observation: Observation) -> Twist:
-        out, asking = np.zeros((1, 3)), np.ones(1, np.bool_)
-        self._move(_as_batch(observation), asking, out)
-        return Twist(*out[0].tolist())
-
-    def _kernels(self) -> BatchKernels | None:
-        return self._decided if self._keeps(PolicyNavigator, "act", "_move") else None
-
-    def _decided(self, batch: ObservationBatch, out: Floats) -> Bools:
-        """Write the twists of the environments with regular values, and return which they are."""
-        asking = rows_for_kernels(batch, with_people=True)
-        if asking.any():
-            self._move(batch, asking, out)
-        return asking
-
-    def _move(self, batch: ObservationBatch, asking: NDArray[np.bool_], out: Floats) -> None:
-        """Write the twists ``[N, 3]`` of the asking environments."""
-        inputs = policy_inputs(batch, MOST_PEOPLE, asking, self.speed)
-        velocity, numbers = np.zeros((len(batch), 2)), drive_numbers(batch.limits, self.speed)
-        layers: Any = read_policy(self.file)
-        apply_network(asking, inputs.own, inputs.people, inputs.present, velocity, *layers)
-        velocity[inputs.present == 0] = (numbers[0], 0.0)  # towards the waypoint
-        limit_velocities(asking, batch.pose, batch.goal, batch.waypoint, inputs.axis, numbers, velocity)
-        if batch.limits.holonomic and not len(wall_arrays(batch.walls).segments):
-            if self.horizon > 0.0:
-                people = batch.people
-                avoid_contacts(
-                    asking, batch.pose, batch.radius, people.position, people.velocity, people.radius, people.seen,
-                    float(numbers[0]), self.horizon, self.margin, velocity,
-                )  # fmt: skip
-            holonomic_twists(asking, batch.pose, velocity, numbers, float(batch.dt), out)
-        else:
-            dynamic_window_twists(batch, asking, velocity, self.speed, out)
+    def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        inputs, shares = policy_inputs(batch, MOST_PEOPLE, asking, self.speed), np.zeros((len(batch), 2))
+        layers: Any = read_layers(PolicyWeights, self.file)
+        apply_network(asking, inputs.own, inputs.people, inputs.present, shares, *layers)
+        shares[inputs.present == 0] = (min(self.speed, batch.limits.max_speed), 0.0)  # towards the waypoint
+        return inputs.axis, shares
 
 
 def _as_batch(observation: Observation) -> ObservationBatch:

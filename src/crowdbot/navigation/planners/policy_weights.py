@@ -1,4 +1,4 @@
-"""PolicyWeights: the layers of the learned policy, as arrays in a NumPy file that executes no code when read."""
+"""NetworkWeights: the layers of a learned navigator, as arrays in a NumPy file that executes no code when read."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import importlib.resources
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,21 +23,20 @@ Singles = NDArray[np.float32]
 LAYERS = (64, 64, 128)
 """Widths of the first and second layer of a person, and of the layers after the pooling."""
 FORMAT = 1
+PARTS = ("weight", "bias")
 
 
-class PolicyWeights(NamedTuple):
-    """Weights ``[in, out]`` and biases ``[out]`` of the layers, float32."""
+@dataclass(frozen=True)
+class NetworkWeights:
+    """Weights ``[in, out]`` and biases ``[out]`` of the layers of a network, float32, in the order of its kernel."""
 
-    person1_weight: Singles
-    person1_bias: Singles
-    person2_weight: Singles
-    person2_bias: Singles
-    action1_weight: Singles
-    action1_bias: Singles
-    action2_weight: Singles
-    action2_bias: Singles
-    action3_weight: Singles
-    action3_bias: Singles
+    navigator: ClassVar[str]
+    """Name of the navigator, and of the file of its weights in the package."""
+
+    @classmethod
+    def widths(cls) -> dict[str, tuple[int, int]]:
+        """Return inputs and outputs of every layer by its name."""
+        raise NotImplementedError
 
     @classmethod
     def shapes(cls) -> dict[str, tuple[int, ...]]:
@@ -45,23 +45,26 @@ class PolicyWeights(NamedTuple):
         >>> PolicyWeights.shapes()["action3_weight"]
         (128, 2)
         """
-        person, pooled, wide = LAYERS
-        own = len(OWN_VALUES)
-        widths = ((own + len(PERSON_VALUES), person), (person, pooled), (pooled + own, wide), (wide, wide), (wide, 2))
-        rows = [shape for size in widths for shape in (size, (size[1],))]
-        return dict(zip(cls._fields, rows, strict=True))
+        rows = cls.widths().items()
+        return {f"{k}_{part}": size for k, (a, b) in rows for part, size in zip(PARTS, ((a, b), (b,)), strict=True)}
+
+    @classmethod
+    def of_layers(cls, layers: Mapping[str, tuple[Any, Any]]) -> Self:
+        """Return the weights from a weight ``[in, out]`` and a bias of every layer by its name."""
+        pairs = ((f"{k}_{part}", value) for k, pair in layers.items() for part, value in zip(PARTS, pair, strict=True))
+        return cls(**{name: np.array(value, np.float32) for name, value in pairs})
 
     def save(self, file: Path, card: Mapping[str, Any]) -> None:
         """Write a file of weights with a card: how they were made, as plain values."""
         text = json.dumps({"format": FORMAT, "card": dict(card)}, sort_keys=True)
         draft = file.with_name(f"{file.name}.part")
         with draft.open("wb") as stream:
-            arrays: dict[str, Any] = {name: np.asarray(value, np.float32) for name, value in self._asdict().items()}
+            arrays: dict[str, Any] = {name: np.asarray(value, np.float32) for name, value in vars(self).items()}
             np.savez(stream, content=np.frombuffer(text.encode(), dtype=np.uint8), **arrays)
         os.replace(draft, file)
 
     @classmethod
-    def read(cls, file: Path) -> tuple[PolicyWeights, dict[str, Any]]:
+    def read(cls, file: Path) -> tuple[Self, dict[str, Any]]:
         """Return the weights and the card of a file.
 
         Raises:
@@ -82,32 +85,62 @@ class PolicyWeights(NamedTuple):
             found = arrays.get(name)
             if found is None or found.shape != shape or found.dtype != np.float32 or not np.isfinite(found).all():
                 raise InputError(f"{file}: {name} must be {list(shape)} finite numbers of type float32; train again")
-        return cls(**{name: arrays[name] for name in cls._fields}), card
+        return cls(**{name: arrays[name] for name in cls.shapes()}), card
 
     def layers(self) -> tuple[NDArray[np.float64], ...]:
         """Return the arrays for the kernels, in their order."""
-        return tuple(np.ascontiguousarray(value, dtype=np.float64) for value in self)
+        return tuple(np.ascontiguousarray(getattr(self, name), dtype=np.float64) for name in self.shapes())
 
 
-def policy_file() -> Path:
-    """Return the file of the weights that are part of the package.
+@dataclass(frozen=True)
+class PolicyWeights(NetworkWeights):
+    """Layers of the navigator ``policy``."""
+
+    navigator: ClassVar[str] = "policy"
+
+    person1_weight: Singles
+    person1_bias: Singles
+    person2_weight: Singles
+    person2_bias: Singles
+    action1_weight: Singles
+    action1_bias: Singles
+    action2_weight: Singles
+    action2_bias: Singles
+    action3_weight: Singles
+    action3_bias: Singles
+
+    @classmethod
+    def widths(cls) -> dict[str, tuple[int, int]]:
+        person, pooled, wide = LAYERS
+        own = len(OWN_VALUES)
+        return {
+            "person1": (own + len(PERSON_VALUES), person),
+            "person2": (person, pooled),
+            "action1": (pooled + own, wide),
+            "action2": (wide, wide),
+            "action3": (wide, 2),
+        }
+
+
+def policy_file(navigator: str = PolicyWeights.navigator) -> Path:
+    """Return the file of the weights of a learned navigator that are part of the package.
 
     >>> policy_file().name
     'policy.npz'
     """
-    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "navigators", "policy.npz")))
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "navigators", f"{navigator}.npz")))
 
 
-def read_policy(file: str) -> tuple[NDArray[np.float64], ...]:
+def read_layers(kind: type[NetworkWeights], file: str) -> tuple[NDArray[np.float64], ...]:
     """Return the layers of a file of weights for the kernels; ``""`` is the file of the package.
 
     A file is read once, and again after it has changed.
     """
-    path = Path(file) if file else policy_file()
+    path = Path(file) if file else policy_file(kind.navigator)
     changed = path.stat().st_mtime_ns if path.is_file() else 0
-    return _layers(path, changed)
+    return _layers(kind, path, changed)  # type: ignore[arg-type]  # classes are hashable
 
 
 @functools.lru_cache(maxsize=16)
-def _layers(path: Path, changed: int) -> tuple[NDArray[np.float64], ...]:
-    return PolicyWeights.read(path)[0].layers()
+def _layers(kind: type[NetworkWeights], path: Path, changed: int) -> tuple[NDArray[np.float64], ...]:
+    return kind.read(path)[0].layers()
