@@ -219,6 +219,7 @@ def test_a_click_without_a_picture_is_answered(browser, serve, tmp_path):
         page.get_by_role("button", name="Measure").click()
         page.locator("canvas.stage").click()
         page.get_by_text("The picture does not show the floor yet").wait_for()
+        assert page.evaluate(f"{VIEW}.status.state") == "failed"  # the click has started nothing
     page.close()
 
 
