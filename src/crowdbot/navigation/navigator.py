@@ -8,7 +8,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -50,6 +50,9 @@ class Navigator(ABC):
     ...         go = observation.time - memory >= self.wait
     ...         return Action(observation.towards_goal(0.8) if go else Twist()), memory
     """
+
+    needs_scan: ClassVar[bool] = False
+    """Whether the navigator knows its surroundings from scans only; a robot without a planar scanner is refused."""
 
     def begin(self, observation: Observation) -> Any:
         """Return the memory before the first decision; None without memory."""

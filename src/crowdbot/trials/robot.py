@@ -26,6 +26,7 @@ from crowdbot.core import (
     reads_only,
 )
 from crowdbot.core.fields import NAME, attribute, check, child, children, mounted_field, plugin_field, quote_value
+from crowdbot.messages import reading_topics
 from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner, SafetyLayer
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Lidar2D, Lidar3D, Sensor, SensorSchedule
@@ -120,6 +121,7 @@ def safety_problems(safety: Any, navigator: Any) -> Iterator[str]:
         yield 'has <safety> in addition to <navigator type="external"/>, which decides nothing; leave it out'
 
 
+LASER_SCAN = "sensor_msgs/msg/LaserScan"
 PEOPLE_INPUTS = ("seen", "true", "tracked")
 ABOUT_PEOPLE = (
     "people in observations: seen (true states of those in the latest readings), true (everybody), or tracked (found in"
@@ -135,6 +137,19 @@ def people_problems(people: str, mounts: Sequence[Any]) -> Iterator[str]:
     """
     if people == "tracked" and not any(isinstance(mount.sensor, Lidar2D | Lidar3D) for mount in mounts):
         yield ('has people="tracked" but no laser scanner; add <sensor type="lidar2d"/> or <sensor type="lidar3d"/>')
+
+
+def scan_problems(navigator: Any, mounts: Sequence[Any]) -> Iterator[str]:
+    """Yield why a robot cannot have a navigator that needs scans; a sensor with unknown readings may give them.
+
+    >>> from crowdbot.navigation import ScanMapNavigator
+    >>> list(scan_problems(ScanMapNavigator(), []))
+    ['has the navigator ScanMapNavigator but no planar laser scanner; add <sensor type="lidar2d"/>']
+    """
+    topics = [reading_topics(mount.sensor) for mount in mounts]
+    if getattr(navigator, "needs_scan", False) and not any(not t or LASER_SCAN in t.values() for t in topics):
+        name = type(navigator).__name__
+        yield f'has the navigator {name} but no planar laser scanner; add <sensor type="lidar2d"/>'
 
 
 def robot_folder_of(name: str, folder: Path | None, trust: bool) -> Path | None:
@@ -394,7 +409,8 @@ class RobotSpec:
         if self.pose is not None and not isinstance(self.navigator, ExternalNavigator):
             raise InputError('has <pose>, so no navigator moves it; take <navigator type="external"/>')
         forecasts = forecast_problems(self.predictor, self.tracks, self.control_period, self.navigator)
-        others = (*people_problems(self.people, self.sensors), *rider_problems(self.rider_kind, self.body.seat))
+        inputs = (*people_problems(self.people, self.sensors), *scan_problems(self.navigator, self.sensors))
+        others = (*inputs, *rider_problems(self.rider_kind, self.body.seat))
         for problem in (*safety_problems(self.safety, self.navigator), *forecasts, *others):
             raise InputError(problem)
         for problem in fault_problems(self.faults, self.sensors):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError, Pose, Scene, Walls
+from crowdbot.core import InputError, Pose, Scene, TrialError, Walls
 from crowdbot.evaluation import parse_methods
 from crowdbot.navigation import DriveLimits, Observation, ScanMapNavigator, VisiblePeople, check_navigator
 from crowdbot.navigation.wrappers.scan_map import OCCUPIED, PLANNERS
@@ -102,6 +102,13 @@ def test_invalid_ranges_add_nothing():
 def test_wrong_values_are_explained(values, message):
     with pytest.raises(InputError, match=message):
         ScanMapNavigator(**values)
+
+
+@pytest.mark.parametrize("name", ["predicted-occupancy", "scan-map"])
+def test_a_robot_without_a_planar_scanner_is_refused(name):
+    with pytest.raises(TrialError, match=r"but no planar laser scanner; add <sensor type=\"lidar2d\"/>"):
+        load_trial("crowdnav-circle-5", {"robot/navigator/type": name})
+    assert load_trial("frontal", {"robot/navigator/type": name}).robots[0].navigator.needs_scan
 
 
 def test_runs_are_equal_in_batches_alone_replayed_and_branched(tmp_path):

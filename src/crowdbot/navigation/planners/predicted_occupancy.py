@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -58,6 +58,8 @@ class PredictedOccupancyNavigator(Navigator):
     >>> PredictedOccupancyNavigator(horizon=2.0).begin(None)
     (-inf, None)
     """
+
+    needs_scan: ClassVar[bool] = True
 
     speed: float = 1.0
     horizon: float = 3.0

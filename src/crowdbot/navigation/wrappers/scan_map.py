@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -53,12 +53,14 @@ class ScanMapNavigator(Navigator):
         memory: time after which the log-odds of a cell that no beam meets are 1/e [s].
 
     Raises:
-        InputError: a number is out of its range, there is no such planner, or the robot has no scanner.
+        InputError: a number is out of its range, or there is no such planner.
 
     >>> ScanMapNavigator(planner="orca").inner
     ORCANavigator(speed=1.0, safety=0.05, share=1.0, time_horizon=1.5, time_horizon_walls=1.0, neighbor_distance=6.0, \
 max_neighbors=15, reaction=0.3)
     """
+
+    needs_scan: ClassVar[bool] = True
 
     speed: float = 1.0
     planner: str = "dynamic-window"
