@@ -35,6 +35,7 @@ OTHERS = (
     "ros2",
     "rosbridge",
     "scan-map",
+    "scan-policy",
     "sinusoid",
 )
 """Navigators that do not decide here, or have a memory; they have tests of their own."""

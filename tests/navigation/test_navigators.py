@@ -22,6 +22,7 @@ OTHERS = (
     navigation.Ros2Navigator,
     navigation.RosbridgeNavigator,
     navigation.ScanMapNavigator,
+    navigation.ScanPolicyNavigator,
     navigation.SinusoidNavigator,
 )
 """Navigators that do not decide here, or have a memory; they have tests of their own."""
@@ -50,6 +51,7 @@ def test_the_room_shows_its_contracts():
         "ros2",
         "rosbridge",
         "scan-map",
+        "scan-policy",
         "sinusoid",
         "time-elastic-band",
     }

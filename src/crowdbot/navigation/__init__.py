@@ -34,6 +34,20 @@ from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
 from .planners.policy_weights import LAYERS, PolicyWeights, policy_file
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.predicted_occupancy import PredictedOccupancyNavigator
+from .planners.scan_policy import (
+    SCAN_CHANNELS,
+    SCAN_LAGS,
+    SCAN_LAYERS,
+    SCAN_SECTORS,
+    SCAN_STRIDES,
+    SCAN_VALUES,
+    ScanInputs,
+    ScanPolicyNavigator,
+    ScanPolicyWeights,
+    drive_twist,
+    remember_scan,
+    scan_inputs,
+)
 from .planners.social_force import SocialForceNavigator
 from .planners.window_navigator import DynamicWindowNavigator
 from .process.process_navigator import ProcessNavigator
@@ -52,6 +66,12 @@ __all__ = [
     "MOST_ATTENDED",
     "OWN_VALUES",
     "PERSON_VALUES",
+    "SCAN_CHANNELS",
+    "SCAN_LAGS",
+    "SCAN_LAYERS",
+    "SCAN_SECTORS",
+    "SCAN_STRIDES",
+    "SCAN_VALUES",
     "WALL_DIRECTIONS",
     "Action",
     "AgentsInView",
@@ -83,7 +103,10 @@ __all__ = [
     "RosbridgeNavigator",
     "SafetyLayer",
     "SafetyState",
+    "ScanInputs",
     "ScanMapNavigator",
+    "ScanPolicyNavigator",
+    "ScanPolicyWeights",
     "SinusoidNavigator",
     "SocialForceNavigator",
     "Straight",
@@ -97,8 +120,11 @@ __all__ = [
     "call_within",
     "check_navigator",
     "copy_memory",
+    "drive_twist",
     "dynamic_window_twist",
     "goal_frame_twists",
     "policy_file",
     "policy_inputs",
+    "remember_scan",
+    "scan_inputs",
 ]

@@ -104,7 +104,7 @@ def test_wrong_values_are_explained(values, message):
         ScanMapNavigator(**values)
 
 
-@pytest.mark.parametrize("name", ["predicted-occupancy", "scan-map"])
+@pytest.mark.parametrize("name", ["predicted-occupancy", "scan-map", "scan-policy"])
 def test_a_robot_without_a_planar_scanner_is_refused(name):
     with pytest.raises(TrialError, match=r"but no planar laser scanner; add <sensor type=\"lidar2d\"/>"):
         load_trial("crowdnav-circle-5", {"robot/navigator/type": name})

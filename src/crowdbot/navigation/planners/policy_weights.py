@@ -32,6 +32,8 @@ class NetworkWeights:
 
     navigator: ClassVar[str]
     """Name of the navigator, and of the file of its weights in the package."""
+    training: ClassVar[str] = "examples/train_navigator.py"
+    """The example that makes such weights."""
 
     @classmethod
     def widths(cls) -> dict[str, tuple[int, int]]:
@@ -71,7 +73,7 @@ class NetworkWeights:
             InputError: the file is missing, damaged, of another format, or its arrays have other shapes.
         """
         if not file.is_file():
-            raise InputError(f"there is no file {file}; make one with examples/train_navigator.py --out DIR")
+            raise InputError(f"there is no file {file}; make one with {cls.training} --out DIR")
         try:
             with file.open("rb") as stream, np.load(stream, allow_pickle=False) as entries:
                 arrays = {name: entries[name] for name in entries.files}
