@@ -2,10 +2,13 @@
 
 import asyncio
 import contextlib
+import gc
 import io
 import json
 import threading
 import time
+import warnings
+from socket import create_connection
 
 import aiohttp
 import numpy as np
@@ -374,6 +377,26 @@ def test_the_server_stops_while_a_command_runs(tmp_path, monkeypatch):
         assert any(item.name == "crowdbot-counter" for item in threading.enumerate())
     finally:
         goes_on.set()
+
+
+@pytest.mark.live
+@pytest.mark.parametrize("turns", range(6))
+def test_a_connection_that_comes_while_the_server_stops_is_closed(tmp_path, turns):
+    async def main():
+        async with AppServer((), tmp_path / "files", port=0).running() as server:
+            client = create_connection(("127.0.0.1", int(server.url.rsplit(":", 1)[1].strip("/"))))
+            for _ in range(turns):  # of the event loop, while it accepts
+                await asyncio.sleep(0)
+        return client
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        client = asyncio.run(main())
+        gc.collect()
+    with client, contextlib.suppress(ConnectionResetError):  # never accepted
+        client.settimeout(60.0)
+        assert client.recv(1) == b""
+    assert [str(item.message) for item in caught] == []
 
 
 @pytest.mark.live

@@ -10,7 +10,7 @@ import ssl
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, cast
 
 from aiohttp import WSCloseCode, web
 
@@ -118,15 +118,8 @@ class AppServer:
         runner = web.AppRunner(self.application(), access_log=None, shutdown_timeout=2.0)
         await runner.setup()
         try:
-            site = web.TCPSite(runner, self.host, self.port, ssl_context=self.tls)
-            try:
-                await site.start()
-            except OSError as error:
-                place = f"{self.host} port {self.port}"
-                raise InputError(
-                    f"the app cannot listen on {place}: {error.strerror or error}; give another --port (0: a free one)"
-                ) from None
-            host, port = runner.addresses[0][:2]
+            listener = await self._listen(runner)
+            host, port = listener.sockets[0].getsockname()[:2]
             shown = f"[{host}]" if ":" in host else host
             token = f"?token={self.access.token}" if self.access.needs_token else ""
             self.url = f"{'https' if self.tls else 'http'}://{shown}:{port}/{token}"
@@ -135,6 +128,7 @@ class AppServer:
                 yield self
             finally:
                 sweeper.cancel()
+                await _close(listener)
         finally:
             for socket in list(self._sockets):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
@@ -152,6 +146,17 @@ class AppServer:
                     transport.abort()
             for _ in range(5):  # the loop closes the sockets in its next turns
                 await asyncio.sleep(0)
+
+    async def _listen(self, runner: web.AppRunner) -> asyncio.Server:
+        """Accept the connections of the application."""
+        loop, server = asyncio.get_running_loop(), cast("web.Server", runner.server)
+        try:
+            return await loop.create_server(server, self.host, self.port, ssl=self.tls)
+        except OSError as error:
+            place = f"{self.host} port {self.port}"
+            raise InputError(
+                f"the app cannot listen on {place}: {error.strerror or error}; give another --port (0: a free one)"
+            ) from None
 
     def application(self) -> web.Application:
         """Return the aiohttp application."""
@@ -299,3 +304,17 @@ class AppServer:
             loop = asyncio.get_running_loop()
             self.sessions[name] = AppSession(name, space, self.desks, loop, self.limits)
         return self.sessions[name]
+
+
+async def _close(listener: asyncio.Server) -> None:
+    """Stop to listen; the server gets each connection that was accepted before, and closes it.
+
+    A listener that is closed while a connection is on its way to the server loses it, with its socket open
+    (https://github.com/python/cpython/issues/109564).
+    """
+    for socket in listener.sockets:
+        with contextlib.suppress(NotImplementedError):  # on Windows nothing lies between accepting and the server
+            asyncio.get_running_loop().remove_reader(socket.fileno())
+    for _ in range(2):  # turns of the loop from accepting to the server
+        await asyncio.sleep(0)
+    listener.close()
