@@ -26,6 +26,11 @@ export class Connection extends EventTarget {
     return this._socket.readyState === WebSocket.OPEN;
   }
 
+  /** Whether a command waits for its answer. */
+  get busy() {
+    return this._calls.size > 0;
+  }
+
   /** Calls a command such as "simulator.open" and returns its result; rejects with the sentence of the server. */
   call(address, args = {}) {
     return new Promise((resolve, reject) => {

@@ -121,7 +121,6 @@ export class App {
   }
 
   _listen() {
-    this.connection.on("connected", () => this._tellConnection("connected", ""));
     this.connection.on("lost", () => {
       this._desks = null;
       this._tellConnection("not connected, trying again", "lost");
@@ -130,6 +129,7 @@ export class App {
       this._desks = new Set(Object.keys(desks));
       if (desks.jobs) this._countJobs(desks.jobs);
       for (const [name, view] of this._views) view.greet?.(desks[name] ?? {});
+      this._tellConnection("connected", "");
     });
     this.connection.on("jobs.state", (state) => this._countJobs(state));
   }

@@ -18,7 +18,7 @@ SCENE = "globalThis.crowdbot?.tab('simulator')?.picture.scene"
 
 def show(page, tab):
     page.get_by_role("tab", name=re.compile(tab, re.IGNORECASE)).click()
-    page.wait_for_function("tab => crowdbot.tab(tab) !== undefined", arg=tab)
+    page.wait_for_function("tab => crowdbot.tab(tab) !== undefined && !crowdbot.connection.busy", arg=tab)
     page.wait_for_load_state("networkidle")
     if tab == "editor":
         page.wait_for_function("() => document.querySelector('.editor textarea').value.includes('trial')")
