@@ -10,6 +10,7 @@ export class EditorModel extends EventTarget {
     this.chosen = [];
     this.people = null;
     this.places = false;
+    this.last = null;
     connection.on("editor.state", (state) => this.take(state));
   }
 
@@ -56,11 +57,23 @@ export class EditorModel extends EventTarget {
     return attempt(() => this.connection.call(`editor.${command}`, args));
   }
 
-  /** An edit of the present revision; returns the new state, or undefined after an error. */
-  async edit(command, args = {}) {
-    const state = await this.call(command, { ...args, revision: this.state.revision });
-    if (state) this.take(state);
-    return state;
+  /**
+   * An edit of the trial as it is shown; returns the new state, or undefined after an error.
+   *
+   * It follows an edit of this page that is on its way, if its paths then name the same elements. A whole text does not:
+   * it would undo that edit.
+   */
+  edit(command, args = {}) {
+    const { revision, tree } = this.state;
+    const before = command === "write" ? null : this.last;
+    const send = async () => {
+      const done = await before;
+      const follows = done?.revision > revision && shape(done.tree) === shape(tree);
+      const state = await this.call(command, { ...args, revision: follows ? done.revision : revision });
+      if (state) this.take(state);
+      return state;
+    };
+    return (this.last = send());
   }
 
   /** Adds an element and chooses it. */
@@ -90,6 +103,9 @@ export class EditorModel extends EventTarget {
     this.emit("people");
   }
 }
+
+/** The tags of a tree as text. */
+const shape = (node) => (node ? `${node.tag}(${node.children.map(shape)})` : "");
 
 /** Paths as text, to compare them. */
 export const same = (one, other) => one.length === other.length && one.every((value, i) => value === other[i]);
