@@ -98,25 +98,30 @@ def test_a_client_sees_and_uses_what_is_allowed_only():
     assert (graph.inbox.take_orders(), graph.inbox.take_calls()) == ([], [])
 
 
+GOOD_FRAMES = (
+    json.dumps({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 1}]}).encode(),
+    json.dumps({"op": "unsubscribe", "subscriptionIds": [1]}).encode(),
+    json.dumps({"op": "advertise", "channels": [{"id": 1, "topic": "/a", "encoding": "json"}]}).encode(),
+    struct.pack("<BI", 1, 1) + b'{"linear": {"x": 1}}',
+    struct.pack("<BIII", 2, 1, 1, 4) + b"json{}",
+    struct.pack("<BBfBQI", 3, 1, 1.0, 0, 0, 2) + b"r1",
+)
+
+
+def hostile_frame(rng):
+    """Return a frame that a hostile client could send."""
+    data = bytearray(rng.choice(GOOD_FRAMES))
+    for _ in range(rng.randint(0, 5)):
+        data[rng.randrange(len(data))] = rng.randrange(256)
+    return bytes(data).decode("latin-1") if rng.random() < 0.5 else bytes(data[: rng.randint(0, len(data))])
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_hostile_frames_leave_nothing_behind(graph, seed):
     rng = random.Random(seed)
-    good = [
-        json.dumps({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 1}]}).encode(),
-        json.dumps({"op": "unsubscribe", "subscriptionIds": [1]}).encode(),
-        json.dumps({"op": "advertise", "channels": [{"id": 1, "topic": "/a", "encoding": "json"}]}).encode(),
-        struct.pack("<BI", 1, 1) + b'{"linear": {"x": 1}}',
-        struct.pack("<BIII", 2, 1, 1, 4) + b"json{}",
-        struct.pack("<BBfBQI", 3, 1, 1.0, 0, 0, 2) + b"r1",
-    ]
     session = FoxgloveSession(graph, lambda: None)
     for k in range(1000):
-        data = bytearray(rng.choice(good))
-        for _ in range(rng.randint(0, 5)):
-            data[rng.randrange(len(data))] = rng.randrange(256)
-        session.handle(
-            bytes(data).decode("latin-1") if rng.random() < 0.5 else bytes(data[: rng.randint(0, len(data))])
-        )
+        session.handle(hostile_frame(rng))
         graph.deliver([message("/clock", k % 256)])
         graph.inbox.take_calls()
     session.handle("[" * 100_000)

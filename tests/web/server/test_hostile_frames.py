@@ -81,7 +81,7 @@ def check(serve, folder, count, caplog, capfd):
     assert bugs == []
     assert answers > 0
     begin = max(memory[: len(memory) // 3])
-    assert memory[-1] - begin < 60.0, (begin, memory[-1])
+    assert memory[-1] - begin < 50.0, (begin, memory[-1])
     assert [record for record in caplog.records if record.levelno >= logging.ERROR] == []
     assert "Traceback" not in capfd.readouterr().err
     assert {item: item.stat().st_mtime_ns for item in folder.parent.iterdir() if item != folder} == {

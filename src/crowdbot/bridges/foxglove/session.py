@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+import functools
 import itertools
 import json
 import re
@@ -17,7 +18,6 @@ from crowdbot.bridges.interface import SERVICES, RobotInterface, interface_store
 from crowdbot.bridges.run_control import PAUSED, PLAYING
 from crowdbot.bridges.socket_server import Backlog, MessageQueue
 from crowdbot.core import InputError
-from crowdbot.messages import Messages
 from crowdbot.recording import StepMessage
 
 MOST_BYTES = 1 << 20
@@ -66,6 +66,12 @@ def _read_json(data: str | bytes) -> dict[str, Any]:
     return fields
 
 
+@functools.cache
+def _schema(kind: str) -> str:
+    """Return the definition of a message type with all its parts; the text is slow to make, and each client gets it."""
+    return str(interface_store().generate_msgdef(kind, ros_version=2)[0])
+
+
 class FoxgloveGraph:
     """What the clients of a server see; used in one thread, but for :attr:`wanted` and :attr:`now`.
 
@@ -95,7 +101,7 @@ class FoxgloveGraph:
         self.channels: dict[str, tuple[int, str]] = {}
         """Number and message type of each topic."""
         self.services = {k: name for k, name in enumerate(SERVICES, 1) if self.allows(f"/crowdbot/{name}")}
-        self._numbers, self._make = itertools.count(1), Messages()
+        self._numbers = itertools.count(1)
         self.change(interface)
 
     def change(self, interface: RobotInterface) -> None:
@@ -157,7 +163,7 @@ class FoxgloveGraph:
                 "encoding": "cdr",
                 "schemaName": self.channels[topic][1],
                 "schemaEncoding": "ros2msg",
-                "schema": self._make.definition(self.channels[topic][1]),
+                "schema": _schema(self.channels[topic][1]),
             }
             for topic in topics
         ]
@@ -167,8 +173,7 @@ class FoxgloveGraph:
         """Return the announcement of the services."""
 
         def schema(kind: str) -> dict[str, str]:
-            text = str(interface_store().generate_msgdef(kind, ros_version=2)[0])
-            return {"encoding": "cdr", "schemaName": kind, "schemaEncoding": "ros2msg", "schema": text}
+            return {"encoding": "cdr", "schemaName": kind, "schemaEncoding": "ros2msg", "schema": _schema(kind)}
 
         rows = [
             {
