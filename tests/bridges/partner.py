@@ -4,11 +4,13 @@
     python partner.py TRANSPORT ADDRESS faulty SEED
     python partner.py TRANSPORT ADDRESS clock SECONDS
     python partner.py TRANSPORT ADDRESS view SECONDS
+    python partner.py TRANSPORT ADDRESS slow COUNT
 
 ``drive`` answers each tick of the clock with a velocity command, connects again when the simulation has gone, and at
 its end prints one line of JSON. ``faulty`` answers each tick with a stamped command, and at random late, several times,
 and again what it has answered before. ``clock`` is the time of a simulation that follows: it goes on in odd portions.
-``view`` receives scan, odometry, transforms and image, and prints the numbers of messages and bytes.
+``view`` receives scan, odometry, transforms and image, and prints the numbers of messages and bytes. ``slow`` takes one
+scan in 0.5 s (over the protocol of requests, one reply), and prints when it took it and the time that the scan says.
 For rospy, ADDRESS is not used and the interpreter is that of the system.
 """
 
@@ -348,6 +350,68 @@ def view(start, address, seconds):
     return dict(seen)
 
 
+PERIOD = 0.5
+"""Real time [s] between two scans of a slow reader."""
+
+
+def slow_ros1(address, take):
+    """Subscribe the scan with rospy; a callback holds up the thread that receives."""
+    import rospy
+    from sensor_msgs.msg import LaserScan
+
+    rospy.init_node("slow", anonymous=True, disable_signals=True)
+    rospy.Subscriber("/robot/scan", LaserScan, lambda scan: take(scan.header.stamp.to_nsec()), queue_size=1)
+
+
+def slow_ros2(address, take):
+    """Subscribe the scan with rclpy."""
+    import threading
+
+    import rclpy
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+    from rclpy.signals import SignalHandlerOptions
+    from sensor_msgs.msg import LaserScan
+
+    rclpy.init(domain_id=int(address), signal_handler_options=SignalHandlerOptions.NO)
+    node, quality = rclpy.create_node("slow"), QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    on_scan = lambda scan: take(scan.header.stamp.sec * 10**9 + scan.header.stamp.nanosec)  # noqa: E731
+    node.create_subscription(LaserScan, "/robot/scan", on_scan, quality)
+    threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+
+
+def slow_tcp(address, take):
+    """Ask the server of the challenge."""
+    import threading
+
+    link = TcpLink(address)
+
+    def ask():
+        while True:
+            link.ask("sim_control=i;")
+            take(link._now)
+
+    threading.Thread(target=ask, daemon=True).start()
+
+
+SLOW = {"ros1": slow_ros1, "ros2": slow_ros2, "tcp": slow_tcp}
+
+
+def read_slowly(start, address, count):
+    """Take some scans, with a pause after each."""
+    rows = []
+
+    def take(nanoseconds):
+        rows.append((time.monotonic_ns(), nanoseconds))
+        time.sleep(PERIOD)
+
+    start(address, take)
+    print("ready", flush=True)
+    end = time.monotonic() + 120.0
+    while len(rows) < count and time.monotonic() < end:
+        time.sleep(0.05)
+    return {"rows": rows[:count]}
+
+
 LINKS = {
     "rosbridge": RosbridgeLink, "rosbridge-client": RosbridgeLink, "foxglove": FoxgloveLink, "tcp": TcpLink,
     "ros1": Ros1Link, "ros2": Ros2Link,
@@ -426,6 +490,8 @@ if __name__ == "__main__":
     _, name, place, mode, length = sys.argv
     if mode == "view":
         found = view(VIEWS[name], place, float(length))
+    elif mode == "slow":
+        found = read_slowly(SLOW[name], place, int(length))
     else:
         found = {"drive": drive, "clock": give_time, "faulty": answer_badly}[mode](LINKS[name], place, float(length))
     print(json.dumps(found), flush=True)

@@ -1,6 +1,6 @@
 """Runs with a robot program in a process of its own, alike for all transports.
 
-    python partner_runs.py loop|kills|deaths|server_deaths|odd|faulty|load TRANSPORT NUMBER FOLDER
+    python partner_runs.py loop|kills|deaths|server_deaths|odd|faulty|load|ages TRANSPORT NUMBER FOLDER
 
 It prints one line of JSON; so a run can be in a network of its own.
 """
@@ -271,6 +271,24 @@ def odd(transport, seconds, folder):
     return {**seen, "steps": done.steps, "digest": done.digest, "free": free.digest}
 
 
+class Times(MemoryTransport):
+    """Keeps when each instant was sent: real and simulated time [ns]."""
+
+    def __init__(self):
+        super().__init__(("/clock",))
+
+    def publish(self, messages):
+        self.sent += [(time.monotonic_ns(), item.nanoseconds) for item in messages if item.topic == "/clock"]
+
+
+def ages(transport, count, folder):
+    """Return the simulated ages [s] of what a reader gets that takes one message in 0.5 s, after the first second."""
+    times = Times()
+    with Meeting(transport, folder) as meeting, Running(endless_trial(600.0), [meeting.node, times]):
+        rows = told(meeting.start("slow", count), 150.0)["rows"]
+    return [(max(now for real, now in times.sent if real <= taken) - stamp) / 1e9 for taken, stamp in rows[2:]]
+
+
 def faulty(transport, count, folder):
     """Run in step with programs that answer late, several times and out of order; return the digests and a free one."""
     trial, digests, stale, sent = endless_trial(1.5), [], [], []
@@ -319,9 +337,15 @@ def load(transport, seconds, folder):
 def main():
     """Run one of them."""
     name, transport, number, folder = sys.argv[1:]
-    work = {"loop": loop, "kills": kills, "odd": odd, "deaths": deaths, "server_deaths": server_deaths, "load": load}[
-        name
-    ]
+    work = {
+        "loop": loop,
+        "kills": kills,
+        "odd": odd,
+        "deaths": deaths,
+        "server_deaths": server_deaths,
+        "load": load,
+        "ages": ages,
+    }[name]
     print(json.dumps(work(transport, int(number), Path(folder))))
 
 

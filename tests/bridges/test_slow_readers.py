@@ -1,4 +1,4 @@
-"""The age of what a client reads that takes one message in 0.5 s."""
+"""The age of what a client reads that takes one message in 0.5 s, over each transport."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import struct
 import aiohttp
 import pytest
 from bridge_runs import MemoryTransport, Running, endless_trial
+from partner_runs import LOCAL, ages
 
 from crowdbot.bridges.foxglove import FoxgloveServer
 from crowdbot.bridges.rosbridge.server import RosbridgeServer
@@ -41,7 +42,7 @@ async def foxglove(socket):
     return lambda data: struct.unpack_from("<Q", data, 5)[0] if isinstance(data, bytes) and data[0] == 1 else None
 
 
-async def ages(port, subscribe, protocols, now):
+async def socket_ages(port, subscribe, protocols, now):
     """Return the simulated ages [ns] of 16 scans that are read one in 0.5 s, after those of the first second."""
     found = []
     async with aiohttp.ClientSession() as http:
@@ -67,5 +68,21 @@ def test_a_reader_of_two_scans_a_second_gets_the_newest(kind, subscribe, protoco
         def now():
             return max(item.nanoseconds for item in clock.sent[-20:])
 
-        found = asyncio.run(ages(server.port, subscribe, protocols, now))
+        found = asyncio.run(socket_ages(server.port, subscribe, protocols, now))
     assert max(found) < OLDEST, found
+
+
+@pytest.mark.parametrize("transport", ["ros2", "tcp"])
+def test_a_slow_reader_in_a_process_of_its_own_gets_the_newest(transport, tmp_path, monkeypatch):
+    monkeypatch.setenv(*next(iter(LOCAL.items())))
+    check(transport, ages(transport, 14, tmp_path))
+
+
+def test_a_slow_reader_of_ros1_gets_the_newest(ros1, tmp_path):
+    check("ros1", ages("ros1", 14, tmp_path))
+
+
+def check(transport, found):
+    print(f"{transport}: oldest of {len(found)} {max(found):.3f} s")
+    assert len(found) == 12
+    assert max(found) < OLDEST / 1e9, found
