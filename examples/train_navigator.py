@@ -171,9 +171,9 @@ class AttendedPeople(BaseFeaturesExtractor):
     """Embeddings of people, weighed by attention, then the values of the robot and the walls."""
 
     def __init__(self, observation_space):
-        super().__init__(observation_space, AttentionWeights.widths()["action1"][0])
+        super().__init__(observation_space, AttentionWeights.widths["action1"][0])
         for name in ("person1", "person2", "score1", "score2"):
-            setattr(self, name, torch.nn.Linear(*AttentionWeights.widths()[name]))
+            setattr(self, name, torch.nn.Linear(*AttentionWeights.widths[name]))
 
     def forward(self, observations):
         own, people, present, walls = (observations[name] for name in ("own", "people", "present", "walls"))
@@ -190,7 +190,12 @@ class AttendedPeople(BaseFeaturesExtractor):
 def make_model(envs, length, seed, network="pooled"):
     """Return PPO with the network of the navigator; ``length`` is the number of steps between two updates."""
     kind, extractor = NETWORKS[network]
-    wide = kind.widths()["action2"][0]
+    wide = kind.widths["action2"][0]
+    return make_ppo(envs, length, seed, extractor, {"pi": [wide, wide], "vf": [64]})
+
+
+def make_ppo(envs, length, seed, extractor, layers):
+    """Return PPO with a part of the network before the layers of the action and of the value."""
     model = PPO(
         "MultiInputPolicy",
         envs,
@@ -202,7 +207,7 @@ def make_model(envs, length, seed, network="pooled"):
         device="cpu",
         policy_kwargs={
             "features_extractor_class": extractor,
-            "net_arch": {"pi": [wide, wide], "vf": [64]},
+            "net_arch": layers,
             "activation_fn": torch.nn.ReLU,
             "log_std_init": float(np.log(0.6)),
         },
@@ -219,7 +224,7 @@ def network_weights(model):
     layers = [layer for layer in policy.features_extractor.children() if isinstance(layer, torch.nn.Linear)]
     layers += [layer for layer in policy.mlp_extractor.policy_net if isinstance(layer, torch.nn.Linear)]
     arrays = [(layer.weight.detach().numpy().T, layer.bias.detach().numpy()) for layer in [*layers, policy.action_net]]
-    return kind.of_layers(dict(zip(kind.widths(), arrays, strict=True)))
+    return kind.of_layers(dict(zip(kind.widths, arrays, strict=True)))
 
 
 NETWORKS = {"pooled": (PolicyWeights, PooledPeople), "attention": (AttentionWeights, AttendedPeople)}
@@ -232,31 +237,36 @@ def parse_trials(text):
     return [(name, dict(word.split("=", 1) for word in words)) for name, *words in parts]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--network", choices=NETWORKS, default="pooled", help="of policy, or of attention-policy")
-    parser.add_argument("--trials", help="trials with values, separated by commas (default: TRIALS of the network)")
+def add_options(parser, environments, cases):
+    """Add the options that the trainings of all navigators have."""
     parser.add_argument("--steps", type=int, default=1_500_000)
-    parser.add_argument("--environments", type=int, default=256)
-    parser.add_argument("--cases", type=int, default=200, help="number of unseen cases of each trial")
+    parser.add_argument("--environments", type=int, default=environments)
+    parser.add_argument("--cases", type=int, default=cases, help="number of unseen cases of each trial")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("weights"), help="folder of the weights and of model.zip")
-    options = parser.parse_args()
-    torch.set_num_threads(1)  # small networks: more threads only wait for each other
-    trials = parse_trials(options.trials or TRIALS[options.network])
-    envs = GoalFrame(trials, options.environments, options.network)
-    model = make_model(envs, max(2, min(8192, options.steps) // envs.num_envs), options.seed, options.network)
+
+
+def train(model, options, trials, table, network_weights):
+    """Train, write the weights with a card, and print the outcomes in unseen cases of the trials."""
     try:
-        model.learn(options.steps, callback=OutcomeTable(updates=20 if options.steps > 200_000 else 1))
+        model.learn(options.steps, callback=table)
     except KeyboardInterrupt:
         print("the training ends early")
     options.out.mkdir(parents=True, exist_ok=True)
     model.save(options.out / "model.zip")
-    weights = network_weights(model)
+    weights, seconds = network_weights(model), round(time.process_time())
     file = options.out / f"{weights.navigator}.npz"
-    command = shlex.join(["python", Path(sys.argv[0]).name, *sys.argv[1:]])
-    weights.save(file, {"command": command, "steps": model.num_timesteps})
-    print(f"{model.num_timesteps} steps, {time.process_time():.0f} s of processor time, weights in {file}")
+    card = {
+        "command": shlex.join(["python", Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "trials": [" ".join([name, *map("=".join, values.items())]) for name, values in trials],
+        "environments": model.n_envs,
+        "seed": options.seed,
+        "planned_steps": options.steps,
+        "steps": model.num_timesteps,
+        "processor_time": seconds,
+    }
+    weights.save(file, card)
+    print(f"{model.num_timesteps} steps, {seconds} s of processor time, weights in {file}", flush=True)
     plan = EvaluationPlan(
         [dataclasses.replace(load_trial(name, values), name=f"{name}-{k}") for k, (name, values) in enumerate(trials)],
         parse_methods(f"{weights.navigator} file={file}"),
@@ -265,6 +275,20 @@ def main():
     for cell in evaluate(plan).cells:
         shares = [f"{name} {cell.estimate(f'{name}-rate')}" for name in OUTCOMES]
         print(f"{cell.trial}: {', '.join(shares)}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--network", choices=NETWORKS, default="pooled", help="of policy, or of attention-policy")
+    parser.add_argument("--trials", help="trials with values, separated by commas (default: TRIALS of the network)")
+    add_options(parser, environments=256, cases=200)
+    options = parser.parse_args()
+    torch.set_num_threads(1)  # small networks: more threads only wait for each other
+    trials = parse_trials(options.trials or TRIALS[options.network])
+    envs = GoalFrame(trials, options.environments, options.network)
+    model = make_model(envs, max(2, min(8192, options.steps) // envs.num_envs), options.seed, options.network)
+    table = OutcomeTable(updates=20 if options.steps > 200_000 else 1)
+    train(model, options, trials, table, network_weights)
     envs.close()
 
 

@@ -12,21 +12,15 @@ velocity in the frame of the waypoint, which the drive follows. ``weights/scan-p
 import argparse
 import dataclasses
 import math
-import shlex
-import sys
-import time
-from pathlib import Path
 
 import numpy as np
 import torch
 from gymnasium import spaces
-from stable_baselines3 import PPO
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecEnv
-from train_navigator import FIRST_CASE, GoalFrame, parse_trials
-from train_with_stable_baselines3 import OUTCOMES, CrowdVecEnv, OutcomeTable
+from train_navigator import GoalFrame, add_options, make_ppo, parse_trials, train
+from train_with_stable_baselines3 import CrowdVecEnv, OutcomeTable
 
-from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
 from crowdbot.gym import ActionForm, ObservationForm, Reward
 from crowdbot.navigation import (
     SCAN_CHANNELS,
@@ -143,25 +137,7 @@ class Sectors(BaseFeaturesExtractor):
 
 def make_model(envs, length, seed):
     """Return PPO with the network of the navigator; ``length`` is the number of steps between two updates."""
-    model = PPO(
-        "MultiInputPolicy",
-        envs,
-        n_steps=length,
-        batch_size=min(1024, length * envs.num_envs),
-        n_epochs=4,
-        learning_rate=lambda left: 1e-3 * left,  # falls to 0: the last policies differ little
-        seed=seed,
-        device="cpu",
-        policy_kwargs={
-            "features_extractor_class": Sectors,
-            "net_arch": list(SCAN_LAYERS),
-            "activation_fn": torch.nn.ReLU,
-            "log_std_init": float(np.log(0.6)),
-        },
-    )
-    with torch.no_grad():
-        model.policy.action_net.bias[0] = 0.5  # towards the goal
-    return model
+    return make_ppo(envs, length, seed, Sectors, list(SCAN_LAYERS))
 
 
 def network_weights(model):
@@ -181,34 +157,13 @@ def network_weights(model):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--trials", default=TRIALS, help=f"trials with values, separated by commas (default: {TRIALS})")
-    parser.add_argument("--steps", type=int, default=1_500_000)
-    parser.add_argument("--environments", type=int, default=192)
-    parser.add_argument("--cases", type=int, default=100, help="number of unseen cases of each trial")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path, default=Path("weights"), help="folder of scan-policy.npz and model.zip")
+    add_options(parser, environments=192, cases=100)
     options = parser.parse_args()
     torch.set_num_threads(1)  # small networks: more threads only wait for each other
     trials = parse_trials(options.trials)
     envs = ScanEnvs(trials, options.environments)
     model = make_model(envs, max(2, min(64, options.steps // envs.num_envs)), options.seed)
-    try:
-        model.learn(options.steps, callback=OutcomeTable(updates=5 if model.n_steps == 64 else 1))
-    except KeyboardInterrupt:
-        print("the training ends early")
-    options.out.mkdir(parents=True, exist_ok=True)
-    model.save(options.out / "model.zip")
-    file = options.out / "scan-policy.npz"
-    command = shlex.join(["python", Path(sys.argv[0]).name, *sys.argv[1:]])
-    network_weights(model).save(file, {"command": command, "steps": model.num_timesteps})
-    print(f"{model.num_timesteps} steps, {time.process_time():.0f} s of processor time, weights in {file}")
-    plan = EvaluationPlan(
-        [dataclasses.replace(load_trial(name, values), name=f"{name}-{k}") for k, (name, values) in enumerate(trials)],
-        parse_methods(f"scan-policy file={file}"),
-        seeds=range(FIRST_CASE, FIRST_CASE + options.cases),
-    )
-    for cell in evaluate(plan).cells:
-        shares = [f"{name} {cell.estimate(f'{name}-rate')}" for name in OUTCOMES]
-        print(f"{cell.trial}: {', '.join(shares)}")
+    train(model, options, trials, OutcomeTable(updates=5 if model.n_steps == 64 else 1), network_weights)
     envs.close()
 
 

@@ -179,13 +179,13 @@ class Navigator(ABC):
     def _name(self, robot: str) -> str:
         return type(self).__name__ + (f" of robot {robot!r}" if robot else "")
 
-    def _keeps(self, kind: type[Navigator], *names: str) -> bool:
+    def _keeps(self, kind: type, *names: str) -> bool:
         """Return whether no subclass of ``kind`` overrides these methods, which its batch form replaces."""
         return _has_own(type(self), kind, ("decide", *names))
 
 
 @functools.cache
-def _has_own(kind: type[Navigator], base: type[Navigator], names: tuple[str, ...]) -> bool:
+def _has_own(kind: type[Navigator], base: type, names: tuple[str, ...]) -> bool:
     """Return whether a class has the methods of a base."""
     return all(getattr(kind, name) is getattr(base, name) for name in names)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -17,7 +18,7 @@ from crowdbot.typing import Floats
 
 from .learned_policy import LearnedNavigator, policy_inputs
 from .policy_kernels import OWN_VALUES, PERSON_VALUES, apply_layer
-from .policy_weights import NetworkWeights, Singles, read_layers
+from .policy_weights import NetworkWeights, Singles, dense_layers, read_layers
 
 MOST_ATTENDED = 12
 """Number of nearest people that the policy knows."""
@@ -29,6 +30,7 @@ WALL_SIGHT = 4.0
 """Distance [m] beyond which walls are ignored."""
 ATTENTION_LAYERS = (64, 64, 32, 128)
 """Widths of the two layers of a person, of the layer of scores, and of the layers of the action."""
+_OWN = len(OWN_VALUES) + len(FACING_VALUES)
 
 
 class AttentionInputs(NamedTuple):
@@ -110,6 +112,11 @@ class AttentionWeights(NetworkWeights):
     """
 
     navigator: ClassVar[str] = "attention-policy"
+    widths: ClassVar[Mapping[str, tuple[int, int]]] = (
+        dense_layers("person", _OWN + len(PERSON_VALUES), *ATTENTION_LAYERS[:2])
+        | dense_layers("score", 2 * ATTENTION_LAYERS[1], ATTENTION_LAYERS[2], 1)
+        | dense_layers("action", ATTENTION_LAYERS[1] + _OWN + WALL_DIRECTIONS, *ATTENTION_LAYERS[3:] * 2, 2)
+    )
 
     person1_weight: Singles
     person1_bias: Singles
@@ -125,20 +132,6 @@ class AttentionWeights(NetworkWeights):
     action2_bias: Singles
     action3_weight: Singles
     action3_bias: Singles
-
-    @classmethod
-    def widths(cls) -> dict[str, tuple[int, int]]:
-        person, embedded, scoring, wide = ATTENTION_LAYERS
-        own = len(OWN_VALUES) + len(FACING_VALUES)
-        return {
-            "person1": (own + len(PERSON_VALUES), person),
-            "person2": (person, embedded),
-            "score1": (2 * embedded, scoring),
-            "score2": (scoring, 1),
-            "action1": (embedded + own + WALL_DIRECTIONS, wide),
-            "action2": (wide, wide),
-            "action3": (wide, 2),
-        }
 
 
 @kernel

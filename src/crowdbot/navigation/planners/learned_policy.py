@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -141,12 +142,12 @@ class LearnedNavigator(Navigator):
         check_number(kind, "horizon", self.horizon, "s", min=0.0)
         check_number(kind, "margin", self.margin, "m", exclusive_min=0.0)
 
+    @abstractmethod
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """Return the x axis of the goal frame ``[N, 2]`` and the velocities in it ``[N, 2]``.
 
         Velocities are shares of the maximum speed; only rows of asking environments count.
         """
-        raise NotImplementedError
 
     def act(self, observation: Observation) -> Twist:
         out, asking = np.zeros((1, 3)), np.ones(1, np.bool_)

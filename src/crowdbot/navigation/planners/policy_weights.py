@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib.resources
+import itertools
 import json
 import os
 from collections.abc import Mapping
@@ -26,6 +27,15 @@ FORMAT = 1
 PARTS = ("weight", "bias")
 
 
+def dense_layers(name: str, *sizes: int) -> dict[str, tuple[int, int]]:
+    """Return inputs and outputs of fully connected layers in a row by their names.
+
+    >>> dense_layers("action", 70, 128, 2)
+    {'action1': (70, 128), 'action2': (128, 2)}
+    """
+    return {f"{name}{k}": pair for k, pair in enumerate(itertools.pairwise(sizes), start=1)}
+
+
 @dataclass(frozen=True)
 class NetworkWeights:
     """Weights ``[in, out]`` and biases ``[out]`` of the layers of a network, float32, in the order of its kernel."""
@@ -34,11 +44,8 @@ class NetworkWeights:
     """Name of the navigator, and of the file of its weights in the package."""
     training: ClassVar[str] = "examples/train_navigator.py"
     """The example that makes such weights."""
-
-    @classmethod
-    def widths(cls) -> dict[str, tuple[int, int]]:
-        """Return inputs and outputs of every layer by its name."""
-        raise NotImplementedError
+    widths: ClassVar[Mapping[str, tuple[int, int]]]
+    """Inputs and outputs of every layer by its name."""
 
     @classmethod
     def shapes(cls) -> dict[str, tuple[int, ...]]:
@@ -47,7 +54,7 @@ class NetworkWeights:
         >>> PolicyWeights.shapes()["action3_weight"]
         (128, 2)
         """
-        rows = cls.widths().items()
+        rows = cls.widths.items()
         return {f"{k}_{part}": size for k, (a, b) in rows for part, size in zip(PARTS, ((a, b), (b,)), strict=True)}
 
     @classmethod
@@ -99,6 +106,9 @@ class PolicyWeights(NetworkWeights):
     """Layers of the navigator ``policy``."""
 
     navigator: ClassVar[str] = "policy"
+    widths: ClassVar[Mapping[str, tuple[int, int]]] = dense_layers(
+        "person", len(OWN_VALUES) + len(PERSON_VALUES), *LAYERS[:2]
+    ) | dense_layers("action", LAYERS[1] + len(OWN_VALUES), LAYERS[2], LAYERS[2], 2)
 
     person1_weight: Singles
     person1_bias: Singles
@@ -110,18 +120,6 @@ class PolicyWeights(NetworkWeights):
     action2_bias: Singles
     action3_weight: Singles
     action3_bias: Singles
-
-    @classmethod
-    def widths(cls) -> dict[str, tuple[int, int]]:
-        person, pooled, wide = LAYERS
-        own = len(OWN_VALUES)
-        return {
-            "person1": (own + len(PERSON_VALUES), person),
-            "person2": (person, pooled),
-            "action1": (pooled + own, wide),
-            "action2": (wide, wide),
-            "action3": (wide, 2),
-        }
 
 
 def policy_file(navigator: str = PolicyWeights.navigator) -> Path:

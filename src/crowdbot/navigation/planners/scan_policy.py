@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -20,7 +21,7 @@ from crowdbot.sensors import Scan
 from crowdbot.typing import Floats
 
 from .policy_kernels import apply_layer, avoid_contacts, limit_velocities
-from .policy_weights import NetworkWeights, Singles, read_layers
+from .policy_weights import NetworkWeights, Singles, dense_layers, read_layers
 
 SCAN_SECTORS = 90
 """Number of directions of the resampled scans, equally spaced around the robot."""
@@ -148,6 +149,15 @@ class ScanPolicyWeights(NetworkWeights):
 
     navigator: ClassVar[str] = "scan-policy"
     training: ClassVar[str] = "examples/train_scan_navigator.py"
+    widths: ClassVar[Mapping[str, tuple[int, int]]] = {
+        "scan1": (len(SCAN_LAGS) * KERNEL, SCAN_CHANNELS[0]),
+        "scan2": (SCAN_CHANNELS[0] * KERNEL, SCAN_CHANNELS[1]),
+    } | dense_layers(
+        "action",
+        SCAN_SECTORS // SCAN_STRIDES[0] // SCAN_STRIDES[1] * SCAN_CHANNELS[1] + len(SCAN_VALUES),
+        *SCAN_LAYERS,
+        2,
+    )
 
     scan1_weight: Singles
     scan1_bias: Singles
@@ -159,18 +169,6 @@ class ScanPolicyWeights(NetworkWeights):
     action2_bias: Singles
     action3_weight: Singles
     action3_bias: Singles
-
-    @classmethod
-    def widths(cls) -> dict[str, tuple[int, int]]:
-        (first, second), (wide, narrow) = SCAN_CHANNELS, SCAN_LAYERS
-        places = SCAN_SECTORS // SCAN_STRIDES[0] // SCAN_STRIDES[1]
-        return {
-            "scan1": (len(SCAN_LAGS) * KERNEL, first),
-            "scan2": (first * KERNEL, second),
-            "action1": (places * second + len(SCAN_VALUES), wide),
-            "action2": (wide, narrow),
-            "action3": (narrow, 2),
-        }
 
 
 @dataclass(frozen=True)
