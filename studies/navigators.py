@@ -75,7 +75,7 @@ people walked up to them. Means over the 35 trials, before and now:
 | `potential-field` | 0.817, 0.851 | 0.031, 0.037 |
 | `dynamic-window` | 0.786, 0.849 | 0.051, 0.054 |
 | `rds` | 0.760, 0.774 | 0.066, 0.037 |
-| `policy` | 0.726, 0.743 | 0.006, 0.000 |
+| `policy` | 0.726, 0.740 | 0.006, 0.000 |
 | straight | 0.603, 0.660 | 0.397, 0.340 |
 
 The order by success stays, but `mpc` is now level with `time-elastic-band`. Five rows of 315 have an interval of

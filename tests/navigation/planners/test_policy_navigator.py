@@ -245,6 +245,14 @@ def test_it_reaches_its_goal_alone(kind: Any, limits: DriveLimits) -> None:
     assert math.dist(pose.position[0], (4.0, 3.0)) < 0.3
 
 
+@every_kind
+@pytest.mark.parametrize(("top", "speed", "expected"), [(0.7, 1.0, 0.7), (1.5, 1.0, 1.0), (1.5, 2.0, 1.5)])
+def test_alone_it_moves_at_its_largest_speed(kind: Any, top: float, speed: float, expected: float) -> None:
+    limits = DriveLimits(top, 1.5, holonomic=True)
+    alone = dataclasses.replace(observe((0.0, 0.0), (8.0, 0.0), [], []), limits=limits)
+    assert kind(speed=speed).act(alone).forward == pytest.approx(expected)
+
+
 def test_the_shipped_weights_have_a_card() -> None:
     assert policy_file().stat().st_size < 1_000_000
     _, card = PolicyWeights.read(policy_file())

@@ -207,7 +207,7 @@ class PolicyNavigator(LearnedNavigator):
         inputs, shares = policy_inputs(batch, MOST_PEOPLE, asking, self.speed), np.zeros((len(batch), 2))
         layers: Any = read_layers(PolicyWeights, self.file)
         apply_network(asking, inputs.own, inputs.people, inputs.present, shares, *layers)
-        shares[inputs.present == 0] = (min(self.speed, batch.limits.max_speed), 0.0)  # towards the waypoint
+        shares[inputs.present == 0] = (1.0, 0.0)  # towards the waypoint
         return inputs.axis, shares
 
 
