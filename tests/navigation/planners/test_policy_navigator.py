@@ -264,8 +264,8 @@ def test_the_weights_of_attention_say_how_they_were_made() -> None:
     file = policy_file("attention-policy")
     assert file.stat().st_size < 300_000
     _, card = AttentionWeights.read(file)
-    assert {"origin", "plan", "score"} <= set(card)
-    assert "examples/train_navigator.py" in card["origin"]
+    assert "train_navigator.py --network attention" in card["command"]
+    assert card["steps"] >= card["planned_steps"]
 
 
 def test_weights_of_another_network_are_refused() -> None:
