@@ -56,6 +56,30 @@ def test_json_tells_every_value_and_where_it_is_from(cart, capsys):
     assert json.loads((cart / "cart" / "import.json").read_text())["table"] == document["table"]
 
 
+def test_values_and_remarks_of_one_kind_are_one_line(cart, capsys):
+    text = (cart / "cart.urdf").read_text()
+    mesh = "<collision><geometry><mesh filename='package://parts/{k}.stl'/></geometry></collision>"
+    arm = "".join(
+        f"<link name='arm{k}'>{mesh.format(k=k)}<inertial><mass value='1'/></inertial></link>"
+        f"<joint name='turn{k}' type='continuous'><parent link='base_link'/><child link='arm{k}'/>"
+        f"<origin xyz='0 0 1'/><axis xyz='0 0 1'/></joint>"
+        for k in range(4)
+    )
+    (cart / "cart.urdf").write_text(text.replace("</robot>", f"{arm}</robot>"))
+    assert main(["new", "robot", "cart.urdf"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sum("motor of tower_joint and 4 more  " in line for line in lines) == 1
+    assert not any("motor of turn" in line for line in lines)
+    printed = [line for line in lines if line.startswith("  - ")]
+    assert printed[0].startswith(
+        "  - the package 'parts' is not found, and 4 mesh files of it are missing (give --package"
+    )
+    assert [line.endswith("(3 more like it)") for line in printed if "package://parts/" in line] == [True]
+    assert printed[-1] == "  - all remarks are in import.json of the robot folder"
+    remarks = json.loads((cart / "cart" / "import.json").read_text())["remarks"]
+    assert sum("package://parts/" in remark for remark in remarks) == 4
+
+
 def test_values_are_changed_by_set(cart, capsys):
     words = ["--set", "max-speed=0.5", "--set", "mass of tower=2.5", "--set", "wheel left_joint=0.079"]
     assert main(["new", "robot", "cart.urdf", "--yes", *words, "--set", "motor of tower_joint=none"]) == 0

@@ -178,7 +178,7 @@ def tricycle():
 
 
 def quadruped():
-    """Twelve joints, hips about x, feet as spheres on fixed joints."""
+    """Twelve joints, hips about x, feet as spheres on fixed joints; a mark above the trunk."""
     limit = "<limit lower='-2' upper='2' effort='40' velocity='20'/>"
     legs = ""
     for a, x in (("F", 0.2), ("R", -0.2)):
@@ -194,7 +194,8 @@ def quadruped():
             legs += joint(f"{name}_calf_joint", "revolute", f"{name}_thigh", f"{name}_calf", "0 0 -0.2", "0 1 0",
                           more=limit)  # fmt: skip
             legs += joint(f"{name}_foot_fixed", "fixed", f"{name}_calf", f"{name}_foot", "0 0 -0.2")
-    return robot("dog", "<link name='base'/>", joint("floating_base", "fixed", "base", "trunk", "0 0 0"),
+    mark = "<link name='base'><visual><geometry><box size='0.001 0.001 0.001'/></geometry></visual></link>"
+    return robot("dog", mark, joint("floating_base", "fixed", "base", "trunk", "0 0 0"),
                  link("trunk", 8.0, box(0.5, 0.2, 0.1)), legs)  # fmt: skip
 
 

@@ -105,6 +105,28 @@ def test_a_missing_include_is_told(tmp_path):
     assert "the macro 'thing' is not defined, since an included file is missing; it is left out" in warnings[1]
 
 
+def test_elements_without_the_prefix_are_read_as_before_2020_with_one_remark():
+    made = expand(
+        "<property name='r' value='0.5'/><macro name='wheel' params='side *pose'><link name='${side}'>"
+        "<insert_block name='pose'/><sphere radius='${r}'/></link></macro><macro name='sphere' params='radius'/>"
+        "<if value='1'><wheel side='left'><origin xyz='0 1 0'/></wheel></if><wheel/><property/>"
+        "<gazebo><include/></gazebo>"
+    )
+    assert [tree(child) for child in made.root.children] == expected(
+        "<link name='left'><origin xyz='0 1 0'/></link><wheel/><property/><gazebo><include/></gazebo>"
+    )
+    assert made.ignored == (
+        "r.xacro:1: <property> has no 'xacro:' before its name, which xacro no longer accepts; this one and all others"
+        " like it are read as if they had",
+    )
+
+
+def test_a_shape_with_the_name_of_a_macro_stays_a_shape():
+    made = expand("<xacro:macro name='box' params='size'><link name='${size}'/></xacro:macro><box size='1 1 1'/>")
+    assert [tree(child) for child in made.root.children] == expected("<box size='1 1 1'/>")
+    assert made.ignored == ()
+
+
 def test_an_error_names_the_included_file(tmp_path):
     path = write(tmp_path, "r.xacro", f"{HEAD}<xacro:include filename='in.xacro'/></robot>")
     write(tmp_path, "in.xacro", f"{HEAD}\n\n<link name='${{1/0}}'/></robot>")

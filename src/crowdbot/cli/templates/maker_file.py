@@ -23,6 +23,8 @@ ENDINGS = (".urdf", ".xacro", ".xml", ".sdf")
 MOST_ROWS = 60
 MOST_REMARKS = 20
 WIDTH = 48
+NAMES_AND_NUMBERS = re.compile(r"'[^']*'|\S*[/\d]\S*")
+"""What differs between remarks of one kind: quoted names, files with lines, and numbers."""
 
 
 def add_robot_options(parser: CommandParser) -> None:
@@ -202,7 +204,7 @@ def _write_text(file: Path, text: str) -> None:
 
 def _print_table(made: RobotFolder) -> None:
     """Print the table, those values first that are to be confirmed."""
-    guesses = sorted(made.guesses, key=lambda guess: not guess.open)
+    guesses = _join_alike(sorted(made.guesses, key=lambda guess: not guess.open))
     rows = [("", "what", "value", "from", "change it with")]
     rows += [_row(guess) for guess in guesses[:MOST_ROWS]]
     widths = [max(len(row[k]) for row in rows) for k in range(4)]
@@ -212,10 +214,14 @@ def _print_table(made: RobotFolder) -> None:
         print(f"and {len(guesses) - MOST_ROWS} more, in import.json of the robot folder")
     if made.remarks:
         print(f"\n{len(made.remarks)} remarks:")
-        for remark in made.remarks[:MOST_REMARKS]:
-            print(f"  - {remark}")
-        if len(made.remarks) > MOST_REMARKS:
-            print(f"  - and {len(made.remarks) - MOST_REMARKS} more, in import.json of the robot folder")
+        kinds: dict[str, list[str]] = {}
+        for remark in made.remarks:
+            kinds.setdefault(NAMES_AND_NUMBERS.sub("", remark), []).append(remark)
+        for alike in list(kinds.values())[:MOST_REMARKS]:
+            print(f"  - {alike[0]}{f' ({len(alike) - 1} more like it)' if len(alike) > 1 else ''}")
+        left = sum(len(alike) for alike in list(kinds.values())[MOST_REMARKS:])
+        if left or len(made.remarks) > len(kinds):
+            print(f"  - {f'and {left} more; ' if left else ''}all remarks are in import.json of the robot folder")
     print()
 
 
@@ -231,6 +237,19 @@ def _print_drives(tests: Sequence[DriveTest]) -> None:
     for test in tests:
         if test.problem:
             print(f"warning: {worlds[test.world]}, {test.problem}")
+
+
+def _join_alike(guesses: Sequence[Guess]) -> list[Guess]:
+    """Return the values with one row for three or more joints or links with the same value from the same source."""
+    alike: dict[tuple[str, ...], list[Guess]] = {}
+    for guess in guesses:
+        what, _, name = guess.what.rpartition(" ")
+        alike.setdefault((what or name, *guess[1:]), []).append(guess)
+    joined: list[Guess] = []
+    for rows in alike.values():
+        many = len(rows) > 2
+        joined += [rows[0]._replace(what=f"{rows[0].what} and {len(rows) - 1} more")] if many else rows
+    return joined
 
 
 def _row(guess: Guess) -> tuple[str, str, str, str, str]:

@@ -266,7 +266,7 @@ def _legs(model: RobotModel, points: Mapping[str, Floats], ground: float) -> tup
         turning = [joint for joint in chain if joint.kind in ("revolute", "continuous") and joint.mimic is None]
         lifted = any(joint.kind == "prismatic" and joint.upper - joint.lower > LIFT for joint in chain)
         if len(turning) >= 2 and not lifted:
-            limbs.add(chain[-1].name)
+            limbs.add(turning[-1].name)
             found |= dict.fromkeys(joint.name for joint in reversed(turning))
     return tuple(found) if len(limbs) >= 2 else ()
 

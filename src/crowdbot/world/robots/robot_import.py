@@ -46,9 +46,9 @@ TEMPLATE = 1.0
 """Limit of commands in the templates of ``<ros2_control>``, which many files keep."""
 PLAUSIBLE = {
     "max_speed": (0.2, 5.0), "max_acceleration": (0.1, 5.0), "max_turn_rate": (0.2, 10.0),
-    "max_turn_acceleration": (0.2, 20.0),
+    "max_turn_acceleration": (0.2, 20.0), "center_x": (-0.5, 0.5), "center_y": (-0.2, 0.2), "wheels_x": (-1.0, 1.0),
 }  # fmt: skip
-"""Usual limits of bases, in SI units; a file with others may have been written for another purpose."""
+"""Usual values of bases, in SI units; a file with others may have been written for another purpose."""
 SIDEWAYS = (
     "the wheels roll along y, but the front of a robot is along x (REP 103), so it would drive sideways; turn the base"
     " of the robot file by 90 degrees"

@@ -43,6 +43,7 @@ class UrdfReader:
         self.friction: dict[str, float] = {}
         self.springs: dict[str, dict[str, float]] = {}
         self.motors: dict[str, str] = {}
+        self.missing: dict[str, set[str]] = {}
         self._read: dict[tuple[str, tuple[float, float, float]], Mesh | str] = {}
 
     def say(self, element: Element, sentence: str) -> None:
@@ -75,15 +76,8 @@ class UrdfReader:
             return False
         return True
 
-    def one(self, element: Element, tag: str) -> Element | None:
-        """Return the child with this tag, or None; record an error if there is more than one."""
-        found = element.each(tag)
-        if len(found) > 1:
-            self.say(found[1], f"occurs more than once in <{element.tag}>; at most one is allowed")
-        return found[0] if found else None
-
     def first(self, element: Element, tag: str) -> Element | None:
-        """Return the first child with this tag, or None; remark on others."""
+        """Return the first child with this tag, as the parser of ROS does, or None; remark on others."""
         found = element.each(tag)
         if len(found) > 1:
             self.remark("ignored", found[1], f"occurs more than once in <{element.tag}>; the first one is used")
@@ -144,7 +138,7 @@ class UrdfReader:
 
     def origin(self, element: Element) -> Floats:
         """Return the frame ``[4, 4]`` of <origin xyz rpy>; the identity without one."""
-        origin = self.one(element, "origin")
+        origin = self.first(element, "origin")
         if origin is None:
             return np.eye(4)
         place, angles = self.row(origin, "xyz", 3, (0.0,) * 3), self.row(origin, "rpy", 3, (0.0,) * 3)
@@ -179,6 +173,9 @@ class UrdfReader:
         self, element: Element, source: str, path: Path | None, scale: tuple[float, float, float], collision: bool
     ) -> Mesh | str:
         if path is None:
+            package = self.folders.missing_package(source)
+            if package:
+                self.missing.setdefault(package, set()).add(source)
             return f"the mesh file {source[:200]} is missing"
         key = (str(path), scale)
         if key not in self._read:

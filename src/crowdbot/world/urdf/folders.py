@@ -101,6 +101,12 @@ class Folders:
                 return place
         return None
 
+    def missing_package(self, reference: str) -> str:
+        """Return the name of the package of a ``package://`` URI whose folder is not known; otherwise ``""``."""
+        scheme, _, rest = reference.partition("://")
+        name = rest.partition("/")[0] if scheme == "package" else ""
+        return "" if name in (self.name, *self.packages) else name
+
     def _in_packages(self, rest: str) -> list[Path]:
         """Return the candidate paths of a file in a package, the most likely first.
 

@@ -110,7 +110,7 @@ def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkSha
     parts: list[LinkShape] = []
     lost: list[str] = []
     for inner in element.each(tag):
-        geometry = reader.one(inner, "geometry")
+        geometry = reader.first(inner, "geometry")
         if geometry is None:
             reader.say(inner, "needs <geometry>")
             continue
@@ -127,11 +127,11 @@ def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkSha
 def _parse_shape(reader: UrdfReader, geometry: Element, collision: bool) -> Shape | str | None:
     """Return the shape, the reason why its mesh is unavailable, or None after an error."""
     inner = [child for child in geometry.children if child.tag in SHAPES]
-    if len(inner) != 1:
-        reader.say(
-            geometry, f"must contain one of {', '.join(f'<{word}>' for word in SHAPES)}, it contains {len(inner)}"
-        )
+    if not inner:
+        reader.say(geometry, f"must contain one of {', '.join(f'<{word}>' for word in SHAPES)}")
         return None
+    if len(inner) > 1:
+        reader.remark("ignored", geometry, f"contains {len(inner)} shapes; the first one, <{inner[0].tag}>, is used")
     element = inner[0]
     if element.tag == "mesh":
         return reader.mesh(element, collision)
@@ -171,13 +171,13 @@ def _length(reader: UrdfReader, element: Element, key: str) -> float | None:
 
 def _inertial(reader: UrdfReader, element: Element) -> tuple[float | None, Floats | None, Floats | None]:
     """Return mass, centre and inertia in the axes of the link; None for missing values."""
-    inner = reader.one(element, "inertial")
+    inner = reader.first(element, "inertial")
     if inner is None:
         return None, None, None
     origin = reader.origin(inner)
-    weight = reader.one(inner, "mass")
+    weight = reader.first(inner, "mass")
     mass = reader.required_value(weight, "value", 0.0) if weight is not None else 0.0
-    moments = reader.one(inner, "inertia")
+    moments = reader.first(inner, "inertia")
     if moments is None:
         return mass, origin[:3, 3], None
     xx, xy, xz, yy, yz, zz = (

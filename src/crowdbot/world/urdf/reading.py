@@ -93,6 +93,16 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
     kept = add_missing_mass(reader, {key: links[key] for key in chain}, ordered, elements)
+    for package, names in reversed(reader.missing.items()):
+        count = "a mesh file" if len(names) == 1 else f"{len(names)} mesh files"
+        reader.remarks.insert(
+            0,
+            Remark(
+                "replaced",
+                f"the package {package[:60]!r} is not found, and {count} of it {'is' if len(names) == 1 else 'are'}"
+                f" missing (give --package {package[:60]}=FOLDER if you have it)",
+            ),
+        )
     files, textures = dict(reader.files), dict(reader.textures)
     return RobotModel(name, kept, ordered, first, tuple(reader.remarks), files, _text(name, root), textures)
 
@@ -187,7 +197,7 @@ def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
     origin, axis = reader.origin(element), _axis(reader, element, kind)
     lower, upper, motor = _limits(reader, element, name, kind)
     spring = reader.springs.get(name, {})
-    dynamics = reader.one(element, "dynamics") or Element("dynamics")
+    dynamics = reader.first(element, "dynamics") or Element("dynamics")
     values = {key: reader.value(dynamics, key, 0.0, 0.0) or 0.0 for key in ("damping", "friction")}
     values |= {
         key: reader.optional_value(dynamics, key, least)
@@ -207,7 +217,7 @@ def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
 
 
 def _link(reader: UrdfReader, element: Element, role: str) -> str:
-    inner = reader.one(element, role)
+    inner = reader.first(element, role)
     name = inner.attributes.get("link", "") if inner else ""
     if not name:
         reader.say(element, f'needs <{role} link="...">')
@@ -215,7 +225,7 @@ def _link(reader: UrdfReader, element: Element, role: str) -> str:
 
 
 def _axis(reader: UrdfReader, element: Element, kind: str) -> np.ndarray:
-    inner = reader.one(element, "axis")
+    inner = reader.first(element, "axis")
     values = None if inner is None else reader.row(inner, "xyz", 3, (1.0, 0.0, 0.0))
     if inner is None or values is None:
         return np.array([1.0, 0.0, 0.0])
@@ -229,7 +239,7 @@ def _axis(reader: UrdfReader, element: Element, kind: str) -> np.ndarray:
 
 def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple[float, float, Motor]:
     """Return the lower and upper limit of the position, and the motor."""
-    inner = reader.one(element, "limit")
+    inner = reader.first(element, "limit")
     commanded = reader.motors.get(name, "")
     if inner is None:
         if kind in ("revolute", "prismatic"):
@@ -250,7 +260,7 @@ def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple
 
 
 def _mimic(reader: UrdfReader, element: Element, kind: str) -> Mimic | None:
-    inner = reader.one(element, "mimic")
+    inner = reader.first(element, "mimic")
     if inner is None:
         return None
     if kind == "fixed":

@@ -20,10 +20,19 @@ MOST_INCLUDES = 20
 MOST_FILES = 300
 PREFIX = "xacro:"
 NAME = re.compile(r"[A-Za-z_]\w*")
-DEFAULT = r"""\$\{.*?\}|\$\(.*?\)|(?:'[^']*'|"[^"]*"|[^\s'"]+)+|"""
+DEFAULT = r"""\$\{.*?\}|\$\(.*?\)|'''|(?:'[^']*'|"[^"]*"|[^\s'"]+)+|"""
 PARAMETER = re.compile(rf"\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?({DEFAULT})(?:\s+|$)", re.DOTALL)
 BARE = re.compile(r"\s*(\S+)(?:\s+|$)")
 MOST_PARAMETERS = 200
+OLD_TAGS = {
+    "macro": "name",
+    "property": "name",
+    "include": "filename",
+    "if": "value",
+    "unless": "value",
+    "insert_block": "name",
+}
+"""Elements that xacro read without its prefix until 2020, each with an attribute that it needs."""
 
 
 class Expansion(NamedTuple):
@@ -112,6 +121,7 @@ class _Expander:
         self.prefix = ""
         self.calls = self.includes = self.files = self.made = 0
         self.now: SourceElement | None = None
+        self.old = False
 
     def top(self, root: SourceElement) -> SourceElement:
         """Return the expanded root element; errors name file and line."""
@@ -154,8 +164,16 @@ class _Expander:
     def expand(self, element: SourceElement, scope: Scope, into: SourceElement) -> None:
         """Expand one element into another one."""
         if not element.tag.startswith(PREFIX):
-            into.children.append(self.copy(element, scope))
-            return
+            if not self.is_old(element):
+                into.children.append(self.copy(element, scope))
+                return
+            if not self.old:
+                self.ignored.append(
+                    f"{element.place}:{element.line}: <{element.tag[:60]}> has no 'xacro:' before its name, which xacro"
+                    " no longer accepts; this one and all others like it are read as if they had"
+                )
+            self.old = True
+            element = _renamed(element, PREFIX + element.tag)
         kind = element.tag[len(PREFIX) :]
         if kind in ("if", "unless"):
             if boolean(self.texts.value(self.required(element, "value"), scope)) == (kind == "if"):
@@ -187,6 +205,17 @@ class _Expander:
             self.call(_renamed(element, PREFIX + name, rest), scope, into)
         else:
             self.call(element, scope, into)
+
+    def is_old(self, element: SourceElement) -> bool:
+        """Return whether an element without prefix is one of xacro, or calls a macro with the parameters it needs."""
+        if element.tag in OLD_TAGS:
+            return OLD_TAGS[element.tag] in element.attributes
+        macro = self.macros.get(self.prefix + element.tag) or self.macros.get(element.tag)
+        if macro is None or not macro.parameters or not self.old:  # <box size> may have a macro beside it
+            return False
+        names = {parameter.name for parameter in macro.parameters}
+        needed = {row.name for row in macro.parameters if row.default is None and not row.name.startswith("*")}
+        return needed <= element.attributes.keys() <= names
 
     def required(self, element: SourceElement, key: str) -> str:
         if key not in element.attributes:
