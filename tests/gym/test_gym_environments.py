@@ -113,10 +113,11 @@ def test_environments_that_end_begin_again(mode: str) -> None:
         assert last["people"][e].tobytes() != first["people"][e].tobytes()
 
 
-def test_the_same_seed_gives_the_same_episodes_after_the_first() -> None:
+@pytest.mark.parametrize("seed", [11, [11, 12], np.array([11, 12]), [None, 11]], ids=["one", "list", "array", "part"])
+def test_the_same_seed_gives_the_same_episodes_after_the_first(seed: Any) -> None:
     def seeds() -> list[list[int]]:
         envs = CrowdVectorEnv("circle-crossing", 2, autoreset="same-step", duration=0.3)
-        envs.reset(seed=11)
+        envs.reset(seed=seed)
         return [envs.step(np.zeros((2, 2), np.float32))[4]["seed"].tolist() for _ in range(12)]
 
     assert seeds() == seeds()

@@ -25,7 +25,7 @@ class CrowdVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[np.flo
 
     ``reset(seed=s)`` gives environment e the seed ``s + e``; a list gives each its own. The episode of a seed has the
     same bytes as in :class:`CrowdEnv`. Environments that end begin again with drawn seeds, in the next step or in the
-    same one.
+    same one; the first seed that is given decides which.
 
     Args:
         trial, observation, action, reward, robot, values: see :class:`CrowdEnv`.
@@ -70,7 +70,6 @@ class CrowdVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[np.flo
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
         """Begin all episodes; without seeds, they are drawn."""
-        super().reset(seed=seed if isinstance(seed, int) else None)
         given: list[int | None]
         if isinstance(seed, int):
             given = [seed + e for e in range(self.num_envs)]
@@ -78,6 +77,7 @@ class CrowdVectorEnv(VectorEnv[Observations, NDArray[np.float32], NDArray[np.flo
             given = [None] * self.num_envs if seed is None else list(seed)
         if len(given) != self.num_envs:
             raise InputError(f"there are {len(given)} seeds for {self.num_envs} environments")
+        super().reset(seed=next((int(item) for item in given if item is not None), None))  # of seeds that are drawn
         seeds = [self._draw() if item is None else int(item) for item in given]
         return self.task.reset(seeds), {"seed": np.array(seeds)}
 
