@@ -83,6 +83,16 @@ def test_an_agent_ends_at_its_goal_and_the_other_goes_on() -> None:
     assert np.hypot(*(now - place)) < 0.5
 
 
+def test_a_trial_that_ends_as_planned_is_not_called_a_timeout() -> None:
+    trial = two_robots(1.0)
+    env = parallel_env(dataclasses.replace(trial, end=dataclasses.replace(trial.end, goal=False)))
+    env.reset(seed=1)
+    infos: dict[str, Any] = {}
+    while env.agents:
+        *_, infos = env.step({name: np.zeros(2) for name in env.agents})
+    assert {name: info["outcome"] for name, info in infos.items()} == {"robot": "finished", "second": "finished"}
+
+
 def test_robots_in_contact_end_with_a_collision() -> None:
     trial = two_robots(6.0)
     first, second = trial.robots

@@ -149,7 +149,9 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
     def _judge(self, touching: set[int]) -> tuple[dict[str, Any], ...]:
         """Return the results of a step and remove the agents that have ended."""
         running, acting = self._running, list(self.agents)
-        over, fall = running.outcome() is not None, running.outcome() == "fall"
+        end = running.outcome()
+        over, fall = end is not None, end == "fall"
+        rest = "timeout" if end in ("success", "collision") else end  # those are another robot's
         rewards: dict[str, float] = {}
         ended: dict[str, bool] = {}
         cut: dict[str, bool] = {}
@@ -166,8 +168,7 @@ class ParallelCrowdEnv(ParallelEnv):  # type: ignore[misc]
             cut[name] = over and not ended[name]
             info: dict[str, Any] = {"seed": running.seeds[0]}
             if ended[name] or cut[name]:
-                other = "fall" if fall else "timeout"
-                outcome = "success" if success else "collision" if collision else other
+                outcome = "success" if success else "collision" if collision else rest
                 info |= {"outcome": outcome, "is_success": success}
             infos[name] = info
         self.agents = [name for name in acting if not (ended[name] or cut[name])]
