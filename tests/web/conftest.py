@@ -13,14 +13,17 @@ import pytest
 
 from crowdbot.web import DESKS, AppServer
 
+LONG = int(os.environ.get("PAGE_TIMEOUT", "180000"))
+"""Longest time [ms] that a test waits for something in a page; kernels may be compiled."""
 FLAGS = ["--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 @pytest.fixture(scope="module")
 def browser():
     """Headless Chromium; Playwright keeps an event loop running until the end of the module."""
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
+    expect.set_options(timeout=LONG)
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     assert path, "chromium is missing: tests/system-packages installs it"
     with sync_playwright() as playwright:
@@ -80,7 +83,7 @@ def page(request, browser, app):
     """
     context = browser.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     page = context.new_page()
-    page.set_default_timeout(int(os.environ.get("PAGE_TIMEOUT", "180000")))  # kernels may be compiled
+    page.set_default_timeout(LONG)
     faults = []
     page.on("console", lambda one: faults.append(one.text) if one.type == "error" else None)
     page.on("pageerror", lambda one: faults.append(str(one)))

@@ -3,6 +3,7 @@
 import time
 
 import pytest
+from playwright.sync_api import expect
 from test_camera_images import TRIAL
 
 pytestmark = pytest.mark.live
@@ -40,7 +41,7 @@ def test_images_are_chosen_seen_and_closed(page, app, axe):
     page.keyboard.press("Space")
     wait(page, f"{drawn('eye/color/color')} > 0")
     figure = page.get_by_role("img", name="eye / color: colour, 160 by 120 pixels, 10 Hz, measured at")
-    assert figure.count() == 1
+    expect(figure).to_have_count(1)
     seen = page.evaluate(PIXELS, "eye / color: colour")
     assert (seen["width"], seen["height"]) == (160, 120)
     assert seen["colors"] > 20
@@ -49,23 +50,23 @@ def test_images_are_chosen_seen_and_closed(page, app, axe):
     assert page.evaluate(PIXELS, "eye / depth: depth")["colors"] > 10
     scale = page.locator(".camera-scale").text_content()
     assert all(word in scale for word in ("0.5 m", "6 m", "nearer", "beyond"))
-    assert "images=" in page.url
+    wait(page, "location.hash.includes('images=')")
 
     larger = page.get_by_role("button", name="Larger: eye / color: colour")
     small = page.locator(".camera-image").first.bounding_box()["width"]
     larger.press("Enter")
-    assert larger.get_attribute("aria-pressed") == "true"
+    expect(larger).to_have_attribute("aria-pressed", "true")
     assert page.locator(".camera-image").first.bounding_box()["width"] > 1.3 * small
     for _ in range(2):
         assert axe(page) == []
         page.get_by_role("button", name="Theme").click()
     page.get_by_role("button", name="Close: eye / color: colour").press("Enter")
-    assert page.locator(".camera-image").count() == 1
-    assert not box.is_checked()
+    expect(page.locator(".camera-image")).to_have_count(1)
+    expect(box).not_to_be_checked()
     page.reload()  # a link shows the same
     wait(page, f"{drawn('eye/depth/depth')} > 0")
-    assert page.locator(".camera-image").count() == 1
+    expect(page.locator(".camera-image")).to_have_count(1)
     page.evaluate("window.crowdbot.connection.call('simulator.open', {name: 'frontal'})")
     wait(page, f"{VIEW}.status.trial === 'frontal' && document.querySelector('.cameras').hidden")
-    assert not page.get_by_text("Camera images", exact=True).is_visible()
-    assert page.locator(".camera-image").count() == 0
+    expect(page.get_by_text("Camera images", exact=True)).to_be_hidden()
+    expect(page.locator(".camera-image")).to_have_count(0)

@@ -1,6 +1,7 @@
 """A person's path through the evaluation tab: compare two navigators, look at the failures, watch one."""
 
 import pytest
+from playwright.sync_api import expect
 
 pytestmark = pytest.mark.live
 
@@ -26,7 +27,7 @@ def results(page):
 def test_navigators_are_compared_and_a_run_is_chosen(results, app):
     page = results
     rows = page.get_by_role("region", name="Table").get_by_role("row")
-    assert rows.count() == 3
+    expect(rows).to_have_count(3)
     page.get_by_role("button", name="2 runs").first.click()
     page.get_by_role("heading", name="frontal, straight").wait_for()
     for seed in (1, 0):  # also right after the run of another one
@@ -48,14 +49,15 @@ def test_robots_are_named_checked_and_compared(page):
     page.get_by_label("Seeds").fill("0:2")
     robots = page.get_by_role("combobox", name="Robots")
     robots.fill("wheelchair, ")
+    expect(page.locator("#known-robots option")).not_to_have_count(0)
     offered = page.locator("#known-robots option").evaluate_all("all => all.map((one) => one.value)")
     assert "wheelchair, pepper" in offered
     assert "wheelchair, wheelchair" not in offered
     robots.fill("wheelchair, peper")
     page.get_by_role("button", name="Run", exact=True).click()
     page.get_by_text("did you mean 'pepper'").wait_for()
-    assert robots.get_attribute("aria-invalid") == "true"
-    assert robots.evaluate("one => one === document.activeElement")
+    expect(robots).to_have_attribute("aria-invalid", "true")
+    expect(robots).to_be_focused()
     assert page.get_by_role("button", name="first").count() == 0  # nothing has been run
     robots.fill("wheelchair, pepper")
     page.get_by_role("button", name="Run", exact=True).click()
@@ -67,7 +69,7 @@ def test_robots_are_named_checked_and_compared(page):
     ]
     results = page.locator(".results")
     results.get_by_text("robot 'robot' becomes pepper, with its own drive").wait_for()
-    assert "--robots wheelchair,pepper" in results.inner_text()
+    expect(results).to_contain_text("--robots wheelchair,pepper")
     page.get_by_role("button", name="2 runs").last.click()
     page.get_by_role("heading", name="doorway, straight, pepper").wait_for()
     for width in (1280, 800):

@@ -13,7 +13,6 @@ from crowdbot.cli import main
 pytestmark = pytest.mark.live
 
 LONG = 180_000
-expect.set_options(timeout=180_000)
 
 TAB = "#tab=prediction"
 
