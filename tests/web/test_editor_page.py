@@ -1,6 +1,7 @@
 """A person's path through the editor: draw a stage, people and a robot, correct an error, undo, save, open again."""
 
 import pytest
+from playwright.sync_api import expect
 
 from crowdbot.trials import load_trial, parse_trial, trial_xml
 
@@ -52,9 +53,8 @@ def test_a_trial_is_drawn_checked_saved_and_opened_again(editor, app):
     count.fill("-2")
     count.press("Tab")
     problem = page.locator(".editor .below .problems button").first
-    problem.wait_for()
-    assert "must be at least 0" in problem.inner_text()
-    assert page.get_by_role("button", name="Run").is_disabled()
+    expect(problem).to_contain_text("must be at least 0")
+    expect(page.get_by_role("button", name="Run")).to_be_disabled()
     page.get_by_role("button", name="Undo").click()
     page.get_by_text("No errors").wait_for()
 
@@ -92,7 +92,7 @@ def test_rare_elements_are_chosen_from_a_list_and_drawn(editor):
         draw(page, None, *corners)
         wait_for_text(page, f"<{name} ")
         page.keyboard.press("Escape")
-        assert page.get_by_label("More tools").input_value() == ""
+        expect(page.get_by_label("More tools")).to_have_value("")
     page.get_by_text("No errors").wait_for()
     trial = parse_trial(text_of(page))
     ramp, stairs, platform, threshold = trial.stage.ground
