@@ -5,14 +5,20 @@ from __future__ import annotations
 import functools
 import http.server
 import socket
+import subprocess
+import sys
 import threading
 
 import pytest
+from bridge_runs import wait
+from partner_runs import ENDLESS, free_port
 
 from crowdbot.bridges import Inbox, RobotInterface
 from crowdbot.bridges.foxglove import FoxgloveServer
 from crowdbot.bridges.rosbridge.server import RosbridgeServer
 from crowdbot.trials import load_trial
+from crowdbot.vr import VR_DESKS, VrServer
+from web.conftest import serve
 
 pytestmark = pytest.mark.live
 KINDS = {"rosbridge": RosbridgeServer, "foxglove": FoxgloveServer}
@@ -49,7 +55,9 @@ def site(tmp_path):
         server.shutdown()
 
 
-def test_no_page_of_a_browser_connects_without_the_token_or_a_name(start, site, chromium):
+@pytest.fixture
+def attack(site, chromium):
+    """Function that connects from a page of another site, and from a frame in it whose origin is null."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -58,20 +66,55 @@ def test_no_page_of_a_browser_connects_without_the_token_or_a_name(start, site, 
         page.goto(site)
         page.set_content('<iframe sandbox="allow-scripts" srcdoc="nothing"></iframe>')
         frames = page.frames
-        assert len(frames) == 2  # the page, and a frame whose origin is null
+        assert len(frames) == 2
 
-        def tries(kind, query="", **options):
-            address = f"ws://127.0.0.1:{start(kind, **options).port}/{query}"
-            protocols = ["foxglove.sdk.v1"] * (kind == "foxglove")
-            return [frame.evaluate(TRY, [address, protocols]) for frame in frames]
+        def tries(address, protocols=(), place=None):
+            if place is not None:
+                page.goto(place)
+            return [frame.evaluate(TRY, [address, list(protocols)]) for frame in ([page] if place else frames)]
 
-        for kind in KINDS:
-            assert tries(kind) == ["refused", "refused"], kind
-            assert tries(kind, token="secret") == ["refused", "refused"], kind
-            assert tries(kind, "?token=wrong", token="secret") == ["refused", "refused"], kind
-            assert tries(kind, "?token=secret", token="secret") == ["open", "open"], kind
-            assert tries(kind, origins=[site]) == ["open", "refused"], kind
+        yield tries
         browser.close()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_page_of_a_browser_connects_without_the_token_or_a_name(kind, start, site, attack):
+    def tries(query="", **options):
+        address = f"ws://127.0.0.1:{start(kind, **options).port}/{query}"
+        return attack(address, ["foxglove.sdk.v1"] * (kind == "foxglove"))
+
+    assert tries() == ["refused", "refused"]
+    assert tries(token="secret") == ["refused", "refused"]
+    assert tries("?token=wrong", token="secret") == ["refused", "refused"]
+    assert tries("?token=secret", token="secret") == ["open", "open"]
+    assert tries(origins=[site]) == ["open", "refused"]
+
+
+def test_no_other_page_connects_to_the_app_or_as_a_headset(attack, tmp_path):
+    with serve(tmp_path / "files", VR_DESKS, VrServer) as server:
+        base = server.url.replace("http", "ws", 1)
+        paths = ("api/main/socket", "api/main/headset", "api/main/headset-window")
+        assert [attack(base + path) for path in paths] == [["refused", "refused"]] * 3
+        assert attack(base + paths[0], place=server.url) == ["open"]  # the page of the app itself
+
+
+def test_no_page_connects_to_the_run_of_a_real_robot(attack):
+    port = free_port()
+    words = ["join", "frontal", *ENDLESS, "--area=-9,-9,9,9", "--bridge", f"rosbridge:{port}"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "crowdbot", *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+
+    def listens():
+        with socket.socket() as probe:
+            return probe.connect_ex(("127.0.0.1", port)) == 0
+
+    try:
+        wait(listens, 120.0, 0.1)
+        assert attack(f"ws://127.0.0.1:{port}/") == ["refused", "refused"]
+    finally:
+        process.kill()
+        process.wait()
 
 
 @pytest.mark.parametrize("kind", KINDS)
