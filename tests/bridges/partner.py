@@ -9,8 +9,9 @@
 ``drive`` answers each tick of the clock with a velocity command, connects again when the simulation has gone, and at
 its end prints one line of JSON. ``faulty`` answers each tick with a stamped command, and at random late, several times,
 and again what it has answered before. ``clock`` is the time of a simulation that follows: it goes on in odd portions.
-``view`` receives scan, odometry, transforms and image, and prints the numbers of messages and bytes. ``slow`` takes one
-scan in 0.5 s (over the protocol of requests, one reply), and prints when it took it and the time that the scan says.
+``view`` receives scan, odometry, transforms and image, answers each tick, and prints the numbers of messages and bytes.
+``slow`` takes one scan in 0.5 s (over the protocol of requests, one reply), and prints when it took it and the time
+that the scan says.
 For rospy, ADDRESS is not used and the interpreter is that of the system.
 """
 
@@ -47,6 +48,13 @@ def command_of(nanoseconds):
 def twist_of(nanoseconds):
     forward, turn = command_of(nanoseconds)
     return {"linear": {"x": forward}, "angular": {"z": turn}}
+
+
+def twist_message(kind, nanoseconds):
+    """Return a Twist of rospy or rclpy."""
+    command = kind()
+    command.linear.x, command.angular.z = command_of(nanoseconds)
+    return command
 
 
 def stamped_twist_of(nanoseconds):
@@ -223,9 +231,7 @@ class Ros2Link:
             return self._ticks.get_nowait()
 
     def drive(self, nanoseconds):
-        command = self._twist()
-        command.linear.x, command.angular.z = command_of(nanoseconds)
-        self._out.publish(command)
+        self._out.publish(twist_message(self._twist, nanoseconds))
 
     def answer(self, nanoseconds):
         command = self._stamped()
@@ -277,9 +283,7 @@ class Ros1Link:
             return self._ticks.get(timeout=seconds)
 
     def drive(self, nanoseconds):
-        command = self._twist()
-        command.linear.x, command.angular.z = command_of(nanoseconds)
-        self._out.publish(command)
+        self._out.publish(twist_message(self._twist, nanoseconds))
 
     def answer(self, nanoseconds):
         command = self._stamped()
@@ -304,22 +308,29 @@ KINDS = {
 
 
 def view_ros1(address, take):
-    """Subscribe all topics with rospy."""
+    """Subscribe all topics with rospy, and answer the clock."""
     import rospy
+    from geometry_msgs.msg import Twist
+    from rosgraph_msgs.msg import Clock
 
     rospy.init_node("viewer", anonymous=True, disable_signals=True)
     for topic in KINDS:
         rospy.Subscriber(topic, rospy.AnyMsg, lambda message: take(len(message._buff)), queue_size=5)
+    out = rospy.Publisher("/robot/cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+    answer = lambda time: out.publish(twist_message(Twist, time.clock.to_nsec()))  # noqa: E731
+    rospy.Subscriber("/clock", Clock, answer, queue_size=1, tcp_nodelay=True)
 
 
 def view_ros2(address, take):
-    """Subscribe the topics whose types are installed with rclpy."""
+    """Subscribe the topics whose types are installed with rclpy, and answer the clock."""
     import importlib
     import threading
 
     import rclpy
+    from geometry_msgs.msg import Twist
     from rclpy.qos import qos_profile_sensor_data
     from rclpy.signals import SignalHandlerOptions
+    from rosgraph_msgs.msg import Clock
 
     rclpy.init(domain_id=int(address), signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node("viewer")
@@ -327,6 +338,9 @@ def view_ros2(address, take):
         with contextlib.suppress(ImportError):
             kind = getattr(importlib.import_module(f"{package}.msg"), name)
             node.create_subscription(kind, topic, lambda data: take(len(data)), qos_profile_sensor_data, raw=True)
+    out = node.create_publisher(Twist, "/robot/cmd_vel", 1)
+    answer = lambda time: out.publish(twist_message(Twist, time.clock.sec * 10**9 + time.clock.nanosec))  # noqa: E731
+    node.create_subscription(Clock, "/clock", answer, 1)
     threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 
 

@@ -315,23 +315,26 @@ class Answers(MemoryTransport):
 
 
 def load(transport, seconds, folder):
-    """Return the share of a core that a bridge needs to send a scan, odometry, transforms and an image at once."""
+    """Return the share of a core of a bridge that sends scan, odometry, transforms and image at once, and latencies."""
     if transport in LOADED_BRIDGES:
         return dataclasses.asdict(bridge_load(transport, float(seconds)))
     traffic = LoadTraffic()
     with Meeting(transport, folder) as meeting:
         node, interface = meeting.node, RobotInterface.of(traffic.trial)
-        node.start(interface, Inbox(interface))
+        inbox = Inbox(interface)
+        node.start(interface, inbox)
         meeting.callback(node.stop)
         viewer = meeting.watch()
         wait(lambda: all(node.wants(topic) for topic in LOAD_TOPICS if (transport, topic) != ("ros2", "/tf")))
-        share, took = traffic.measure(node, float(seconds))
+        share, took = traffic.measure(node, inbox, float(seconds))
         if meeting.server:
             viewer.stdin.write("\n")
             viewer.stdin.flush()
         else:
             viewer.send_signal(signal.SIGTERM)
-        return {"share": share, "seconds": took, **told(viewer, 60.0)}
+        answers = inbox.latency.summary()
+        latency = {"p50": 1e3 * answers.median, "p99": 1e3 * answers.p99}
+        return {"share": share, "seconds": took, **latency, **told(viewer, 60.0)}
 
 
 def main():

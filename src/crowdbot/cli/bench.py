@@ -28,7 +28,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "names",
         metavar="NAME",
         nargs="*",
-        help=f"measurements (default: all), or {ENVIRONMENTS}: simulations of many environments, compared with"
+        help=f"measurements (default: all; bridges: those of robot interfaces), or {ENVIRONMENTS}: simulations of many"
+        f" environments, compared with"
         f" navground and ir-sim, {ENGINES}: crowd models beside RVO2, JuPedSim, navground and PySocialForce, or"
         f" {DRIVES}: how robots follow velocity commands in the physics world",
     )

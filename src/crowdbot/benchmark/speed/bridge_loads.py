@@ -1,4 +1,4 @@
-"""Processor time of bridges that send a scan, odometry, transforms and an image, for ``crowdbot bench``."""
+"""Bridges that send a scan, odometry, transforms and an image: processor time, latency and age."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from crowdbot.bridges import Inbox, RobotInterface, Transport, open_transport
+from crowdbot.bridges import CommandLatency, Inbox, RobotInterface, Transport, open_transport
 from crowdbot.core import InputError, SpatialPose
 from crowdbot.recording import StepMessages
 from crowdbot.sensors import Lidar2D, RGBCamera
@@ -32,8 +32,13 @@ KEPT = 20
 """Number of steps whose records are sent again and again."""
 LOADED_BRIDGES = ("rosbridge", "rosbridge-cbor", "foxglove")
 """Connections whose load is measured."""
-SHARE = 0.25
-"""Largest processor time of a bridge over real time."""
+BOUNDS = {
+    "": ("CPU s/s", 0.25, "processor time"),
+    "-p50": ("ms", 5.0, "median latency of commands"),
+    "-p99": ("ms", 20.0, "99 % latency of commands"),
+    "-age": ("s", 0.6, "largest age of the newest scan at a second client, which reads 2 scans/s"),
+}
+"""Unit, bound and meaning of each row, by the end of its name."""
 PATIENCE = 60.0
 """Longest real time [s] until the viewer is connected."""
 
@@ -44,32 +49,42 @@ class BridgeLoad:
 
     Fields:
         share: processor time of all threads of the bridge over real time.
+        p50, p99: real time from the messages of a step to the command that answers it, median and 99 % [ms].
+        age: largest age [s] of a scan when a client takes it that reads two in a second.
         messages: messages that have arrived.
         bytes: bytes that have arrived.
         seconds: real time [s].
     """
 
     share: float
+    p50: float
+    p99: float
+    age: float
     messages: int
     bytes: int
     seconds: float
 
 
 def bridge_measurements() -> dict[str, Callable[[], Gauge]]:
-    """Return functions that measure the processor time of bridges, by name.
+    """Return functions that measure bridges under load, by name; the rows of a bridge are of one run.
 
     A bridge sends a scan of 1080 beams and an image of 640 x 480 pixels at 10 Hz, and odometry and transforms at
-    20 Hz, to a viewer in another process. The simulation itself is not counted.
+    20 Hz, to a program that answers each step with a command, and the scan to a slow reader. The simulation itself is
+    not counted.
 
-    >>> sorted(bridge_measurements())
-    ['bridge-foxglove', 'bridge-rosbridge', 'bridge-rosbridge-cbor']
+    >>> sorted(bridge_measurements())[:4]
+    ['bridge-foxglove', 'bridge-foxglove-age', 'bridge-foxglove-p50', 'bridge-foxglove-p99']
     """
-    return {f"bridge-{name}": functools.partial(_load, name) for name in LOADED_BRIDGES}
+    load = functools.cache(bridge_load)
 
+    def row(name: str, ending: str) -> Gauge:
+        unit, bound, about = BOUNDS[ending]
+        value = getattr(load(name), ending.removeprefix("-") or "share")
+        return Gauge(unit, value, f"{bound:g} {unit}: {about}", bound)
 
-def _load(name: str) -> Gauge:
-    words = f"{100 * SHARE:g} % of a core: 1080 beams, 640 x 480 pixels at 10 Hz, odometry, tf"
-    return Gauge("CPU s/s", bridge_load(name).share, words, SHARE)
+    return {
+        f"bridge-{name}{ending}": functools.partial(row, name, ending) for name in LOADED_BRIDGES for ending in BOUNDS
+    }
 
 
 def bridge_load(connection: str = "rosbridge", seconds: float = SECONDS) -> BridgeLoad:
@@ -91,14 +106,19 @@ def bridge_load(connection: str = "rosbridge", seconds: float = SECONDS) -> Brid
     traffic = LoadTraffic()
     interface = RobotInterface.of(traffic.trial)
     transport: Any = open_transport(f"{connection.partition('-')[0]}:0")
-    transport.start(interface, Inbox(interface))
+    inbox = Inbox(interface)
+    transport.start(interface, inbox)
     try:
         with _viewer(connection, transport) as viewer:
-            share, took = traffic.measure(transport, seconds)
+            share, took = traffic.measure(transport, inbox, seconds)
             told = json.loads(viewer.communicate("\n", timeout=PATIENCE)[0].splitlines()[-1])
     finally:
         transport.stop()
-    return BridgeLoad(share, told["messages"], told["bytes"], took)
+    answers = inbox.latency.summary()
+    if not answers.commands or not told["scans"]:
+        raise InputError(f"the viewer of {connection} has sent {answers.commands} commands and read no scan")
+    age = max(traffic.age(*row) for row in told["scans"])
+    return BridgeLoad(share, 1e3 * answers.median, 1e3 * answers.p99, age, told["messages"], told["bytes"], took)
 
 
 class LoadTraffic:
@@ -111,23 +131,40 @@ class LoadTraffic:
         self.trial = _trial()
         simulation, self._frames = _frames(self.trial)
         self._steps = StepMessages(self.trial, {}, simulation)
+        self._sent: list[tuple[int, int]] = []
+        """Real and simulated time [ns] of the steps."""
 
-    def measure(self, transport: Transport, seconds: float) -> tuple[float, float]:
+    def age(self, taken: int, stamp: int) -> float:
+        """Return the age [s] of a message with a stamp [ns] that a client took at a real time [ns]."""
+        return (max(sent for real, sent in self._sent if real <= taken) - stamp) / 1e9
+
+    def measure(self, transport: Transport, inbox: Inbox, seconds: float) -> tuple[float, float]:
         """Return the processor time of this process over real time while a transport sends, and the real time [s]."""
-        self.send(transport, WARM)
+        self.send(transport, inbox, WARM)
+        inbox.latency = CommandLatency()
         begin, spent = time.perf_counter(), time.process_time()
-        self.send(transport, seconds)
+        self.send(transport, inbox, seconds)
         took = time.perf_counter() - begin
         return (time.process_time() - spent) / took, took
 
-    def send(self, transport: Transport, seconds: float) -> None:
+    def send(self, transport: Transport, inbox: Inbox, seconds: float) -> None:
         """Send steps in real time, each with a time of its own, for some seconds."""
-        begin = time.perf_counter()
+        begin, wanted = time.perf_counter(), (*LOAD_TOPICS, "/clock")
         for k in range(round(seconds / self.trial.step)):
             time.sleep(max(0.0, begin + k * self.trial.step - time.perf_counter()))
-            frame = self._frames[k % len(self._frames)]
-            transport.publish(list(self._steps.messages(frame, lambda topic: topic in LOAD_TOPICS or _is_part(topic))))
+            nanoseconds = round(len(self._sent) * self.trial.step * 1e9)
+            frame = self._frames[len(self._sent) % KEPT]
+            readings = tuple(
+                (robot, mount, dataclasses.replace(reading, time=nanoseconds * 1e-9))
+                for robot, mount, reading in frame.readings
+            )
+            frame = dataclasses.replace(frame, nanoseconds=nanoseconds, readings=readings)
+            messages = list(self._steps.messages(frame, lambda topic: topic in wanted or _is_part(topic)))
+            self._sent.append((time.monotonic_ns(), nanoseconds))
+            inbox.latency.note_step()
+            transport.publish(messages)
             transport.poll()
+            inbox.take_orders()
 
 
 def _trial() -> Trial:

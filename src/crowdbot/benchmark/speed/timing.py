@@ -27,6 +27,9 @@ from .live_frames import LIVE_FRAMES, live_frames
 from .measurement import Gauge, Measurement
 from .workloads import measurements
 
+BRIDGES = "bridges"
+"""Name of all measurements of bridges."""
+
 
 @dataclass(frozen=True)
 class SpeedRow:
@@ -53,7 +56,8 @@ def measure(
 ) -> list[SpeedRow]:
     """Time the named measurements (default: all); calibrated frames are taken from ``recording``, if given.
 
-    ``more`` are further measurements, of rooms above this one.
+    The name ``bridges`` stands for all that begin with ``bridge-``. ``more`` are further measurements, of rooms above
+    this one.
 
     Raises:
         UnknownName: a name is not among :func:`crowdbot.benchmark.measurements`.
@@ -70,6 +74,7 @@ def measure(
         | {name: functools.partial(live_frames, name) for name in LIVE_FRAMES}
         | dict(more or {})
     )
+    names = [row for name in names for row in (bridge_measurements() if name == BRIDGES else (name,))]
     unknown = next((name for name in names if name not in known), None)
     if unknown is not None:
         raise UnknownName("measurement", unknown, known)
