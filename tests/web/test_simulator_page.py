@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from crowdbot.recording import read_episode, record, replay
 from crowdbot.simulation import PushOrder
@@ -54,12 +55,12 @@ def files(app):
 
 
 def test_an_empty_start_shows_a_robot_among_walking_people(page, files):
-    assert page.get_by_role("tab", name="Simulator").get_attribute("aria-selected") == "true"
+    expect(page.get_by_role("tab", name="Simulator")).to_have_attribute("aria-selected", "true")
     wait(page, f"{VIEW}.status.trial === '{FIRST[0]}'")
     wait(page, "document.querySelectorAll('.trials li img').length > 30")
     state(page, "running")
     wait(page, f"{VIEW}.picture.scene.info().people > 20 && {VIEW}.picture.scene.info().robots === 1", 120)
-    assert page.evaluate(f"{VIEW}.picture.scene.info().calls") > 0  # drawn in space
+    wait(page, f"{VIEW}.picture.scene.info().calls > 0")  # drawn in space
     wait(page, "document.querySelectorAll('[aria-label=\"Choose a person or robot\"] option').length > 20", 60)
     show_from_above(page)
     at = status(page, "time")
@@ -69,9 +70,9 @@ def test_an_empty_start_shows_a_robot_among_walking_people(page, files):
     page.reload()
     page.wait_for_selector(".connection:not(.lost):has-text('connected')")
     state(page, "paused")
-    assert "view=2d" in page.url  # a link shows the same
-    assert page.get_by_label("View", exact=True).input_value() == "2d"
-    assert page.evaluate(f"{VIEW}.plots.rows.length") > 1
+    wait(page, "location.hash.includes('view=2d')")  # a link shows the same
+    expect(page.get_by_label("View", exact=True)).to_have_value("2d")
+    wait(page, f"{VIEW}.plots.rows.length > 1")
 
 
 def test_a_distance_is_measured_and_a_legend_explains_the_zones_of_the_trial(page, files):
@@ -80,18 +81,19 @@ def test_a_distance_is_measured_and_a_legend_explains_the_zones_of_the_trial(pag
     page.get_by_role("button", name="Pause").click()
     legend = page.get_by_role("list", name="Legend")
     wait(page, f"{VIEW}.picture.scene.state.description?.zones.some((zone) => zone.kind === 'start')")
-    assert legend.get_by_role("listitem").all_inner_texts()[:2] == ["Start of people", "Goal of people"]
+    expect(legend.get_by_role("listitem").first).to_have_text("Start of people")
+    expect(legend.get_by_role("listitem").nth(1)).to_have_text("Goal of people")
     assert "Portal" not in legend.inner_text()
     picture, strip = (page.locator(f".simulator {one}").bounding_box() for one in (".picture", ".picture-legend"))
     assert strip["y"] >= picture["y"] + picture["height"]  # it covers nothing of the picture
     assert strip["height"] < 30
     page.get_by_text("Legend", exact=True).click()
-    assert legend.is_hidden()
+    expect(legend).to_be_hidden()
     page.reload()
     page.locator(".picture-legend:not([hidden]) summary").wait_for()
-    assert legend.is_hidden()
+    expect(legend).to_be_hidden()
     page.get_by_text("Legend", exact=True).click()
-    assert legend.is_visible()
+    expect(legend).to_be_visible()
     page.get_by_label("Zones").uncheck()
     wait(page, "!document.querySelector('.picture-legend').textContent.includes('Start')")
     wait(page, f"{VIEW}.picture.scene.state.frame")
@@ -105,10 +107,10 @@ def test_a_distance_is_measured_and_a_legend_explains_the_zones_of_the_trial(pag
     drawn = f"{VIEW}.picture.scene._measured.length"
     assert page.evaluate(drawn) == 2
     page.get_by_label("View", exact=True).select_option("3d")
-    assert page.evaluate(f"{VIEW}.picture.scene._measured.visible")
+    wait(page, f"{VIEW}.picture.scene._measured.visible === true")
     page.keyboard.press("Escape")
-    assert not page.evaluate(f"{VIEW}.picture.scene._measured.visible")
-    assert note.is_hidden()
+    wait(page, f"{VIEW}.picture.scene._measured.visible === false")
+    expect(note).to_be_hidden()
 
 
 def test_a_view_that_is_changed_while_it_loads_is_no_error(page, files):
@@ -312,7 +314,7 @@ def test_trials_stand_in_groups_with_pictures_of_people(page, files):
     assert groups == ["Files of the folder", *dict.fromkeys(trial_groups().values())]
     for name, group in [("mine.xml", groups[0]), *trial_groups().items()]:
         row = trials.get_by_role("region", name=group).locator(f"button[data-name='{name}'] img")
-        assert row.count() == 1, name
+        expect(row, name).to_have_count(1)
     for name, people in (("frontal", 1), ("dense-circle", 20)):
         picture = page.request.get(page.evaluate(f"document.querySelector('[data-name=\"{name}\"] img').src"))
         assert picture.text().count("<circle") == people + 1  # the people and the robot
@@ -328,8 +330,7 @@ def test_a_run_that_ends_as_its_trial_plans_is_not_called_a_timeout(page):
     values = {"duration": "1", "end/goal": "false"}
     page.evaluate("settings => crowdbot.connection.call('simulator.open', { name: 'frontal', settings })", values)
     wait(page, f"{VIEW}.status.state === 'ended' && {VIEW}.status.trial === 'frontal'", FIRST_RUN / 1000)
-    line = page.locator(".status-line").inner_text()
-    assert line.startswith("frontal, seed 1: ended as planned")
+    expect(page.locator(".status-line")).to_contain_text("frontal, seed 1: ended as planned")
 
 
 def test_axe_finds_nothing_in_both_themes(page, axe):
