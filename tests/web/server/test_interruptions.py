@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect
 
 from crowdbot.trials import parse_trial
 
@@ -85,8 +86,8 @@ def test_a_killed_server_comes_back_with_the_jobs_and_the_text_stays(window, tmp
         page.locator(".connection:not(.lost):has-text('connected')").wait_for()
         page.get_by_role("tab", name="Jobs").click()
         page.locator(".job.interrupted").wait_for()
-        assert "the server ended while the job was running" in page.locator(".job.interrupted").inner_text()
-        assert page.get_by_role("button", name="Continue first").is_visible()
+        expect(page.locator(".job.interrupted")).to_contain_text("the server ended while the job was running")
+        expect(page.get_by_role("button", name="Continue first")).to_be_visible()
         page.get_by_role("tab", name="Editor").click()
         assert 'map="mine"' in text_of(page)  # what was typed meanwhile
     finally:
