@@ -1,6 +1,7 @@
 """A person's path through the jobs tab: start a search for failures, reload, see its results, remove it."""
 
 import pytest
+from playwright.sync_api import expect
 
 pytestmark = pytest.mark.live
 
@@ -26,9 +27,9 @@ def done(page):
 def test_a_job_survives_a_reload_and_gives_its_results(done, app, axe):
     page = done
     job = page.get_by_role("listitem").filter(has_text="tries")
-    assert "crowdbot falsify frontal --navigator=straight" in job.inner_text()
+    expect(job).to_contain_text("crowdbot falsify frontal --navigator=straight")
     page.get_by_role("button", name="Log tries").click()
-    assert "4 runs in" in page.get_by_role("region", name="Log").inner_text()
+    expect(page.get_by_role("region", name="Log")).to_contain_text("4 runs in")
     assert axe(page) == []
     page.get_by_role("dialog").get_by_role("button", name="Close").click()
     page.get_by_role("button", name="Results tries").click()
