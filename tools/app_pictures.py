@@ -66,6 +66,7 @@ def experiments(page: Page) -> None:
 def evaluation(page: Page) -> None:
     """Compare two navigators and list the runs of the first."""
     page.get_by_label("Trials").select_option("circle-crossing")
+    page.get_by_label("Trials").evaluate("(one) => one.selectedOptions[0].scrollIntoView({ block: 'start' })")
     page.get_by_label("Seeds").fill("0:30")
     page.get_by_role("button", name="Run", exact=True).click()
     page.get_by_role("heading", name="first").wait_for(timeout=LONG)

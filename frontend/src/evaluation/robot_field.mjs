@@ -4,7 +4,7 @@ import { field, fill, h } from "../ui/dom.mjs";
 /** What robots bring and replace, in the lines of the command line, and remarks on them; an empty list shows nothing. */
 export function robotFacts(lines, remarks, open = false) {
   return [
-    lines.length ? h("details", { class: "robots", open }, h("summary", {}, "Drive and sensors of the robots"), h("ul", {}, lines.map((one) => h("li", {}, one)))) : null,
+    lines.length ? h("details", { class: "facts", open }, h("summary", {}, "Drive and sensors of the robots"), h("ul", {}, lines.map((one) => h("li", {}, one)))) : null,
     remarks.map((one) => h("p", { class: "remark" }, one)),
   ].flat();
 }

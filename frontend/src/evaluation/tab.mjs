@@ -57,7 +57,7 @@ class EvaluationTab {
         { onsubmit: start },
         field("Trials (several with Ctrl or Shift)", this.trials),
         field("Navigators", this.navigators),
-        this.known,
+        h("details", { class: "facts" }, h("summary", {}, "Parameters and built-in navigators"), this.known),
         this.robots.element,
         field("Seeds", this.seeds),
         h("p", { class: "note" }, "0:20 are the 20 seeds from 0 to 19."),
@@ -96,7 +96,8 @@ class EvaluationTab {
     if (!this.table && shown && state.evaluations.some((one) => one.name === shown && one.done)) await this.open(shown, true);
     else if (!this.table && !shown && state.first) await this.openFirst(state.first);
     fill(this.trials, names.map((one) => h("option", { selected: chosen.size ? chosen.has(one) : one === "frontal" }, one)));
-    this.trials.selectedOptions[0]?.scrollIntoView({ block: "nearest" });
+    const [first] = this.trials.selectedOptions;
+    if (first) this.trials.scrollTop = first.offsetTop - this.trials.firstElementChild.offsetTop;
     this.robots.offer(sources.robots);
     this.known.textContent = `With parameters, such as "orca safety=0.2". Built-in: ${sources.navigators.join(", ")}`;
   }
