@@ -83,6 +83,11 @@ DRAWN = """() => {
   return drawn && [performance.now() / 1000, info.time];
 }"""
 
+LIVE = """() => {
+  const { status, picture } = crowdbot.tab("simulator");
+  return status.state === "running" && !status.recorded && picture.newest?.time > 0;
+}"""
+
 
 @dataclasses.dataclass(frozen=True)
 class Time:
@@ -143,19 +148,39 @@ def first_picture(browser: Browser, folder: Path) -> list[Time]:
     return [Time("first picture on loopback", statistics.median(times), "s", 2.0, how)]
 
 
-def cold_start(browser: Browser, folder: Path) -> list[Time]:
-    """From the start of the program with an empty cache of kernels to people who walk."""
+def cold_start(browser: Browser, folder: Path, beside: str = "") -> list[Time]:
+    """From the start of the program with an empty cache of kernels to people who walk, and to the live run."""
     browser.new_page().close()
     with program(folder, cache=folder / "cache") as (address, process, begin), window(browser, address) as page:
         first = page.wait_for_function(DRAWN).json_value()[1]
-        page.wait_for_function(f"() => crowdbot.tab('simulator').picture.scene.info().time > {first} + 0.2")
+        now = page.wait_for_function(
+            f"() => crowdbot.tab('simulator').picture.scene.info().time > {first} + 0.2 && performance.now() / 1000"
+        ).json_value()
         walking, used = time.monotonic() - begin, processor_time(process)
-    load = os.getloadavg()[0]
-    how = f"from the start of the program, at a load average of {load:.0f} on {os.cpu_count()} cores"
+        page.wait_for_function(LIVE, timeout=4 * PATIENCE)
+        live = time.monotonic() - begin
+    how = f"at a load average of {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores"
     return [
-        Time("people walk, from an empty kernel cache", walking, "s", 10.0, how),
-        Time("the same, processor time of the server", used, "s", None, "until people walk"),
+        Time(
+            f"people walk, from an empty kernel cache{beside}",
+            walking,
+            "s",
+            10.0,
+            f"from the start of the program, {how}",
+        ),
+        Time(f"the same, from the request of the page{beside}", now, "s", 3.0, "without that of the program"),
+        Time(f"the same, processor time of the server{beside}", used, "s", None, "until people walk"),
+        Time(f"the run is live, from an empty kernel cache{beside}", live, "s", 20.0, "from the start of the program"),
     ]
+
+
+def busy_cold_start(browser: Browser, folder: Path) -> list[Time]:
+    """Measure the cold start beside a core that is busy with something else."""
+    with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as other:
+        try:
+            return cold_start(browser, folder, ", beside a busy core")
+        finally:
+            other.kill()
 
 
 def compilation(browser: Browser, folder: Path) -> list[Time]:
@@ -326,6 +351,7 @@ def thousand(browser: Browser, folder: Path) -> list[Time]:
 ROWS: dict[str, Callable[[Browser, Path], list[Time]]] = {
     "first-picture": first_picture,
     "cold-start": cold_start,
+    "busy-cold-start": busy_cold_start,
     "compilation": compilation,
     "edited-wall": edited_wall,
     "seek": seek,
