@@ -10,7 +10,7 @@ from simulator_session import Windows, ready, simulator, wait_until
 from crowdbot.core import InputError
 from crowdbot.simulation import Simulation
 from crowdbot.trials import load_trial
-from crowdbot.web import call_command
+from crowdbot.web import StateFrame, call_command
 from crowdbot.web.scene import WalkingBodies, scene_description, scene_frame, scene_resource
 from crowdbot.web.simulator import FIRST, LiveRun, live_run
 from crowdbot.web.simulator.beginning_player import BeginningPlayer
@@ -147,7 +147,7 @@ def test_nothing_waits_for_a_run_that_is_prepared_and_another_one_opens_meanwhil
 
 
 @pytest.mark.live
-def test_a_robot_is_taken_over_and_given_back_while_the_run_is_prepared(tmp_path, monkeypatch):
+def test_meshes_come_and_a_robot_is_taken_over_and_given_back_while_the_run_is_prepared(tmp_path, monkeypatch):
     gate, inner = threading.Event(), live_run.open_run
 
     def late(*args, **options):
@@ -158,6 +158,8 @@ def test_a_robot_is_taken_over_and_given_back_while_the_run_is_prepared(tmp_path
     with simulator(tmp_path) as desk:
         desk.open("frontal", {"robot/navigator/type": "social-force", "robot/navigator/relaxation": "0.7"}, paused=True)
         desk.release("robot")  # nobody has taken it over
+        assert StateFrame.decode(desk.resource("bodies/2.bin", {}).data).arrays["rest"].size  # those of every trial
+        assert desk.resource("robots/robot.bin", {}).data == b""  # that of the scene before, if there was one
         desk.take_over("robot")
         with pytest.raises(InputError, match="there is no robot 'robo', did you mean 'robot'"):
             desk.take_over("robo")

@@ -143,3 +143,31 @@ def test_a_server_without_virtual_reality_shows_no_controls_for_it(page):
     expect(page.get_by_text("This server has no virtual reality.")).to_be_visible()
     assert page.locator("#panel-vr").get_by_role("button").count() == 0
     assert page.locator("#panel-vr").get_by_role("img").count() == 0
+
+
+COVERED = """() => {
+  const notes = document.querySelector('.messages');
+  const controls = document.querySelectorAll('button, input, select, textarea, summary, a[href], [role=separator]');
+  return [...controls].filter((one) => one.checkVisibility() && !notes.contains(one)).filter((one) => {
+    const box = one.getBoundingClientRect();
+    const hit = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+    return hit && notes.contains(hit);
+  }).map((one) => one.title || one.textContent || one.outerHTML);
+}"""
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1920, 1080)])
+def test_messages_cover_no_control_in_any_tab(page, width, height):
+    page.set_viewport_size({"width": width, "height": height})
+    for tab in PANES:
+        show(page, tab)
+        for count in range(3):
+            page.evaluate("(file) => crowdbot.openInSimulator({ file })", "no-such-hall" * (1 + 4 * count) + ".mcap")
+        expect(page.locator(".message.error")).to_have_count(3)
+        page.wait_for_function(f"({COVERED})().length === 0")
+        box = page.locator(".messages").bounding_box()
+        assert 0 <= box["x"] <= width - box["width"]
+        assert 0 <= box["y"] <= height - box["height"]
+        for _ in range(3):
+            page.get_by_role("button", name="Close message").first.click()
+        expect(page.locator(".message")).to_have_count(0)

@@ -1,5 +1,5 @@
 // The scale of a floor plan picture: two points whose distance is known, or the size of a pixel.
-import { say } from "../ui/dialog.mjs";
+import { say } from "../ui/messages.mjs";
 import { field, h } from "../ui/dom.mjs";
 import { themeColour } from "../ui/plot.mjs";
 

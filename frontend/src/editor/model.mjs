@@ -1,5 +1,5 @@
 // EditorModel: the trial on the server, the chosen elements, and edits that name the revision they change.
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 
 export class EditorModel extends EventTarget {
   constructor(connection) {

@@ -1,5 +1,6 @@
 // Dialogs of the editor: open a built-in trial or a file, bring a map or a file in, save.
-import { attempt, openDialog, say } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { field, h } from "../ui/dom.mjs";
 import { upload } from "../ui/upload.mjs";
 import { makeFloorScale } from "./floor_scale.mjs";

@@ -1,5 +1,6 @@
 // Editor tab: tools, view from above, outline, form of the chosen element, XML, problems, files.
-import { openDialog, say } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { say } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makePane } from "../ui/layout.mjs";
 import { Inspector } from "./inspector.mjs";

@@ -1,6 +1,6 @@
 // Evaluation tab: compare navigators, see the table, watch a run.
 import { copyText } from "../ui/copy.mjs";
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
 import { makePane } from "../ui/layout.mjs";
 import { upload } from "../ui/upload.mjs";

@@ -1,5 +1,6 @@
 // Experiments tab: the screens for the participant, and the controls of the operator beside them.
-import { attempt, openDialog, say } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { field, fill, h } from "../ui/dom.mjs";
 import { makePane } from "../ui/layout.mjs";
 import { pageNodes } from "./page_nodes.mjs";

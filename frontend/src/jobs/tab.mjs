@@ -1,5 +1,6 @@
 // Jobs tab: long work in worker processes: start it, see how far it is, cancel it, take its results.
-import { attempt, openDialog } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 import { makePane } from "../ui/layout.mjs";

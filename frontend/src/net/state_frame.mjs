@@ -37,3 +37,14 @@ export function decodeFrame(buffer) {
   }
   return frame;
 }
+
+/** A mesh that was asked for belongs to a scene that is no longer shown; the description of the next one follows. */
+export class SceneGone extends Error {}
+
+/** Returns the frame with a mesh; `resource` makes the address of a path and query. Throws SceneGone, or what failed. */
+export async function fetchMesh(resource, path, query) {
+  const response = await fetch(resource(path, query));
+  if (response.status === 204) throw new SceneGone(path);
+  if (!response.ok) throw new Error(`${path}: ${(await response.text()).trim()}`);
+  return decodeFrame(await response.arrayBuffer());
+}

@@ -1,5 +1,5 @@
 // Runs the predictors: button, progress, and a log with one line a frame.
-import { say } from "../ui/dialog.mjs";
+import { say } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 

@@ -1,6 +1,6 @@
 // What the prediction tab shows: the board of the server, the frame, the chosen person, and what is drawn.
 import { decodeFrame } from "../net/state_frame.mjs";
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 
 const NUMBERS = { frame: "index", person: "person" };
 const LAYERS = { walls: true, background: true, observed: true, truth: true, predicted: true, ids: false, density: false, seen: true };

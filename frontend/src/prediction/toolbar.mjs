@@ -1,7 +1,7 @@
 // What is drawn, and what leaves the tab: pictures, tables, command line, Python.
 import { copyText } from "../ui/copy.mjs";
 import { h } from "../ui/dom.mjs";
-import { say } from "../ui/dialog.mjs";
+import { say } from "../ui/messages.mjs";
 import { save } from "../ui/save.mjs";
 
 const LAYERS = [

@@ -1,5 +1,5 @@
 // Scene2D: a scene seen from above, on a 2-D canvas, with the interface of Scene3D.
-import { decodeFrame } from "../net/state_frame.mjs";
+import { fetchMesh } from "../net/state_frame.mjs";
 import { LOOKS, OWN_LAYERS } from "../scene/look.mjs";
 import { SceneState } from "../scene/scene_state.mjs";
 import { drawGrid, drawStage, drawZones } from "./plan.mjs";
@@ -32,7 +32,7 @@ export class Scene2D {
 
   /** Loads what stands still. Keeps the view if the scene has the same bounds. */
   async load(description) {
-    this._bodies ??= await this._fetch("bodies/2.bin");
+    this._bodies ??= await fetchMesh(this._resource, "bodies/2.bin");
     const moved = JSON.stringify(this.state.description?.bounds) !== JSON.stringify(description.bounds);
     this.state.describe(description, this._bodies);
     for (const { name, title } of description.layers) {
@@ -208,12 +208,6 @@ export class Scene2D {
     if (!place) return;
     [this._view.x, this._view.y] = place;
     this._view.turn = this._camera === "follow" ? 0 : 0.5 * Math.PI - place[2];
-  }
-
-  async _fetch(path) {
-    const response = await fetch(this._resource(path));
-    if (!response.ok) throw new Error(`${path}: ${(await response.text()).trim()}`);
-    return decodeFrame(await response.arrayBuffer());
   }
 
   _resize() {

@@ -1,6 +1,6 @@
 // Scene3D: a scene in space. Frames are applied as they come; render() draws the newest.
 import * as THREE from "three";
-import { decodeFrame } from "../net/state_frame.mjs";
+import { fetchMesh } from "../net/state_frame.mjs";
 import { LOOKS, OWN_LAYERS } from "../scene/look.mjs";
 import { SceneState } from "../scene/scene_state.mjs";
 import { Crowd, LEVELS } from "./crowd.mjs";
@@ -39,11 +39,12 @@ export class Scene3D {
 
   /** Loads what stands still: meshes, walls, robots. Keeps the camera if the scene has the same bounds. */
   async load(description) {
-    const bodies = this._bodies ?? Promise.all([...Array(LEVELS).keys()].map((level) => this._fetch(`bodies/${level}.bin`)));
+    const bodies = this._bodies ?? Promise.all([...Array(LEVELS).keys()].map((level) => fetchMesh(this._resource, `bodies/${level}.bin`)));
     this._bodies = bodies;
+    bodies.catch(() => (this._bodies = null));
     const meshes = new Map();
     const robots = description.robots.map(async (one) => {
-      const mesh = await this._fetch(one.mesh, { key: one.key });
+      const mesh = await fetchMesh(this._resource, one.mesh, { key: one.key });
       meshes.set(one.key, { arrays: mesh.arrays, textures: await readTextures(mesh) });
     });
     const [levels] = await Promise.all([bodies, ...robots]);
@@ -268,12 +269,6 @@ export class Scene3D {
     this._measured.renderOrder = 1;
     this._scene.add(this._sun, this._sun.target, this._dome, this._stage.group, this._robots.group, this._ring, this._measured);
     for (const one of Object.values(this._overlays)) this._scene.add(one.object);
-  }
-
-  async _fetch(path, query) {
-    const response = await fetch(this._resource(path, query));
-    if (!response.ok) throw new Error(`${path}: ${(await response.text()).trim()}`);
-    return decodeFrame(await response.arrayBuffer());
   }
 
   /** Id of the person or robot in whose head the camera is, or null. */

@@ -1,7 +1,7 @@
 // DisplayPanel: view, camera, and what the picture shows.
 import { legend } from "../scene/field.mjs";
 import { LOOKS, sceneLegend } from "../scene/look.mjs";
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { CameraPanel } from "./camera_panel.mjs";
 

@@ -1,5 +1,5 @@
 // Drive: a robot is driven, or a person walked, by keyboard, on-screen joystick or gamepad. Every input is an order.
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { h } from "../ui/dom.mjs";
 
 const REPEAT = 100;

@@ -1,5 +1,6 @@
 // EpisodePanel: events of a recorded episode, and branches of it.
-import { attempt, openDialog, say } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 

@@ -1,6 +1,6 @@
 // Export menu: the run as a command line or as Python, and the picture as a file.
 import { copyText } from "../ui/copy.mjs";
-import { attempt, say } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { h } from "../ui/dom.mjs";
 import { save } from "../ui/save.mjs";
 

@@ -1,5 +1,5 @@
 // Inspector: the state of the chosen person or robot, and what can be done with it.
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 
 /** Directions of a push: text, and angle in the world [rad]. */

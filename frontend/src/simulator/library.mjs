@@ -1,5 +1,6 @@
 // Library: built-in trials with thumbnails, files of the folder, recorded episodes.
-import { attempt, openDialog, say } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 import { upload } from "../ui/upload.mjs";

@@ -1,9 +1,10 @@
 // Picture: the canvas of the simulator: the scene, the preview while it is prepared, clicks.
+import { SceneGone } from "../net/state_frame.mjs";
 import { Scene2D } from "../scene2d/scene2d.mjs";
 import { Scene3D } from "../scene3d/scene3d.mjs";
 import { Motion } from "../scene/motion.mjs";
 import { h } from "../ui/dom.mjs";
-import { say } from "../ui/dialog.mjs";
+import { say } from "../ui/messages.mjs";
 import { drawPreview, previewFloor } from "./preview.mjs";
 
 const AWAKE = 800;
@@ -67,7 +68,7 @@ export class Picture {
 
   /** Asks for what stands still, and for the newest frame. */
   renew() {
-    this._loading ??= this._load().catch((error) => say(error.message, "error"));
+    this._loading ??= this._load();
   }
 
   /** Text over the picture, of the "run" or of a "tool", which is more urgent. */
@@ -200,7 +201,7 @@ export class Picture {
     const frame = this._loading ? null : this.motion.at(performance.now());
     if (!frame) return;
     if (this.scene.apply(frame)) this.preview(null);
-    else this._loading = this._load().catch((error) => say(error.message, "error"));
+    else this._loading = this._load();
   }
 
   async _load() {
@@ -213,6 +214,9 @@ export class Picture {
       }
       if (this.motion.newest && this.scene?.apply(this.motion.newest)) this.preview(null);
       this.wake();
+    } catch (error) {
+      if (!(error instanceof SceneGone)) say(error.message, "error");
+      return;
     } finally {
       this._loading = null;
     }

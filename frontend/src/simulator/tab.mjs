@@ -1,5 +1,5 @@
 // Simulator tab: a trial that runs or an episode that plays, and everything that can be done with it.
-import { attempt, say } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { h } from "../ui/dom.mjs";
 import { keepOpen, makePane } from "../ui/layout.mjs";
 import { DisplayPanel } from "./display_panel.mjs";

@@ -1,5 +1,6 @@
 // Tools: what the next click on the floor does: add a person or robot, set a goal, move somebody, be a person, measure.
-import { attempt, openDialog } from "../ui/dialog.mjs";
+import { openDialog } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 import { makeExport } from "./export_menu.mjs";

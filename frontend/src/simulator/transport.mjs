@@ -1,5 +1,5 @@
 // Transport: run, pause, step, speed, time, and the status line.
-import { attempt } from "../ui/dialog.mjs";
+import { attempt } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, null];

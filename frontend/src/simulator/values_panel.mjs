@@ -1,5 +1,5 @@
 // ValuesPanel: every value of the trial by its path, as for --set; changed while it runs, or at a restart.
-import { attempt, say } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 
 const MOST = 40;

@@ -1,6 +1,7 @@
 // App: the frame of the page: header, tabs, theme, connection state, keys, address.
 import { Connection } from "../net/connection.mjs";
-import { attempt, messageRegion, openDialog, say } from "./dialog.mjs";
+import { openDialog } from "./dialog.mjs";
+import { attempt, messageRegion, placeMessages, say } from "./messages.mjs";
 import { fill, h } from "./dom.mjs";
 import { Keys, keyName } from "./keys.mjs";
 
@@ -114,6 +115,7 @@ export class App {
       h("main", {}, [...this._panels.values()]),
       messageRegion,
     );
+    placeMessages();
     const stored = this.address.get("theme") ?? localStorage.getItem("theme");
     const system = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
     document.documentElement.dataset.theme = stored ?? system;

@@ -1,5 +1,6 @@
 // SceneFeed: the state that the headset shows: the trial of the simulator, or that of an experiment.
 import { unpackBones } from "./bone_triples.mjs";
+import { SceneGone } from "../net/state_frame.mjs";
 import { StateBuffer } from "./state_buffer.mjs";
 
 const CHANNELS = { scene: "simulator", trial: "experiments" };
@@ -63,7 +64,7 @@ export class SceneFeed {
       .call(`${this.desk}.description`)
       .then((description) => (description.revision === undefined ? null : this.scene.load(description)))
       .then(() => this.ask())
-      .catch((error) => this.say(error.message))
+      .catch((error) => error instanceof SceneGone || this.say(error.message))
       .finally(() => {
         this._loading = null;
       });

@@ -1,5 +1,5 @@
 // The tab of the operator: who is in virtual reality, latency, rooms, and what makes it safe.
-import { attempt, say } from "../ui/dialog.mjs";
+import { attempt, say } from "../ui/messages.mjs";
 import { fill, h } from "../ui/dom.mjs";
 import { makeForm } from "../ui/form.mjs";
 import { capturesPanel } from "./captures_panel.mjs";

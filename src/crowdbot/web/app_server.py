@@ -261,7 +261,9 @@ class AppServer:
             found = await session.resource(request.match_info["desk"], path, dict(request.query))
         except KeyError:
             raise web.HTTPNotFound(text=f"file {path!r:.80} does not exist") from None
-        response = web.Response(body=found.data, headers={"Cache-Control": "no-cache"})
+        response = web.Response(
+            body=found.data or None, status=200 if found.data else 204, headers={"Cache-Control": "no-cache"}
+        )
         response.content_type = found.kind
         if found.sandbox:
             response.headers["Content-Security-Policy"] = SANDBOX

@@ -42,7 +42,7 @@ class Resource:
     """A file that a desk makes for the browser, such as the meshes of the bodies.
 
     Args:
-        data: content.
+        data: content; empty if it belonged to something that is no longer shown (status 204).
         kind: media type.
         name: name of the file if it is to be saved, or None to show it.
         sandbox: whether it is a page with scripts of its own, which the browser then keeps apart from the app.

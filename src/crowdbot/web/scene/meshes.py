@@ -28,7 +28,7 @@ def scene_resource(simulation: Any, path: str, query: dict[str, str]) -> Resourc
     """Return a mesh of a scene as the bytes of a :class:`StateFrame`.
 
     Args:
-        simulation: the simulation, for the meshes of its robots.
+        simulation: the simulation, for the meshes of its robots; None for those of bodies.
         path: ``bodies/LEVEL.bin`` with a level of detail from 0 (finest) to 2, or ``robots/NAME.bin``.
         query: not used.
 

@@ -300,9 +300,13 @@ class SimulatorDesk(Desk):
             name = name.removesuffix(".svg")
             file = self.session.workspace.readable(name) if name.endswith(".xml") else None
             return Resource(thumbnail(name, file), "image/svg+xml")
+        if kind == "bodies":  # the same in all trials
+            return scene_resource(None, path, query)
         player = self._any()
         if (recorded := self._beginning()) is not None:
             return recorded.resource(path)
+        if player.state in ("preparing", "failed"):  # a mesh of the scene before, which is no longer shown
+            return Resource(b"")
         result: Resource = player.do(lambda: scene_resource(player.view.simulation, path, query))
         return result
 
