@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from mcap_messages import McapRecording
+
 from ros_bags import BagWriter
 
 WALLS = "POLYGON ((-9 -9, 9 -9, 9 9, -9 9, -9 -9), (4 4, 5 4, 5 5, 4 5, 4 4))"

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from ros_bags import BagWriter
 
 from crowdbot import cli
 from crowdbot.core import DataError, InputError
 from crowdbot.data import detect_format, load
+from ros_bags import BagWriter
 
 BEGIN = 1000.0
 STANDING = {1: (6.0, 1.0), 2: (4.0, -2.0)}

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from .readers.columns import check_quantities
     from .readers.hdf5_arrays import read_hdf5_arrays
     from .readers.plausibility import WIDEST_DEGREES
+    from .readers.ros.bags import read_bag_messages
     from .readers.ros.detections import DETECTIONS, PERSON_CLASSES, detected_people
     from .readers.ros.episode import PEOPLE_TYPES
     from .readers.ros.frames import Frames, frame_name, stamp_of
@@ -97,6 +98,7 @@ __all__ = [
     "parse_columns",
     "primary_windows",
     "read_attachment",
+    "read_bag_messages",
     "read_forecasts",
     "read_hdf5_arrays",
     "read_homography",

@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from .recorded_scans.ogm_files import OGM_PERIOD as OGM_PERIOD
     from .recorded_scans.ogm_files import find_ogm_split as find_ogm_split
     from .recorded_scans.ogm_files import read_ogm as read_ogm
+    from .recorded_scans.scan_bags import read_scan_bag as read_scan_bag
     from .report import write_report as write_report
     from .requirement import Requirement as Requirement
     from .requirement import RequirementVerdict as RequirementVerdict

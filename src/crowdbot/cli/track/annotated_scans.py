@@ -1,8 +1,9 @@
-"""``crowdbot track`` on recorded scans with annotated people: files of DROW and FROG, folders of L-CAS."""
+"""``crowdbot track`` on recorded scans with annotated people: files of DROW and FROG, folders of L-CAS, bags."""
 
 from __future__ import annotations
 
 import argparse
+import itertools
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,12 +16,18 @@ if TYPE_CHECKING:
     from crowdbot.evaluation import AnnotatedScan
 
 
-FROG_SUFFIXES = (".h5", ".hdf5")
+FROG_SUFFIXES, BAG_SUFFIXES = (".h5", ".hdf5"), (".bag", ".db3")
 
 
 def is_annotated(source: str) -> bool:
     """Return whether a source is a file or a folder of recorded scans."""
-    return source.endswith((".csv", *FROG_SUFFIXES)) or any(Path(source).glob("*.pcd"))
+    return source.endswith((".csv", *FROG_SUFFIXES)) or any(Path(source).glob("*.pcd")) or bool(_bags(source))
+
+
+def _bags(source: str) -> list[Path]:
+    """Return the bag, or the bags of a folder."""
+    path = Path(source)
+    return sorted(file for file in (path.iterdir() if path.is_dir() else [path]) if file.suffix in BAG_SUFFIXES)
 
 
 def score_annotated(options: argparse.Namespace) -> int:
@@ -30,9 +37,10 @@ def score_annotated(options: argparse.Namespace) -> int:
 
     if options.by or options.predictor or options.plot or options.trial:
         raise InputError("--by, --predictor, --plot and --trial are for trials and episodes, not for recorded scans")
-    options.detector = options.detector or ["cloud-clusters" if Path(options.source).is_dir() else "lidar-clusters"]
+    clouds = any(Path(options.source).glob("*.pcd"))
+    options.detector = options.detector or ["cloud-clusters" if clouds else "lidar-clusters"]
     detectors, trackers = chosen_detectors(options), chosen_trackers(options)
-    scores = score_positions(read_annotated(options.source), detectors, trackers, options.reach)
+    scores = score_positions(read_annotated(options), detectors, trackers, options.reach)
     name, first = Path(options.source).name, next(iter(scores.values()))
     if options.json:
         print_json({"source": name, "people": first.people,
@@ -46,19 +54,26 @@ def score_annotated(options: argparse.Namespace) -> int:
             f"{score.f1:.3f}",
             f"{score.error:.3f}",
             str(score.detections),
+            f"{score.false_rate:.2f}",
         ]
         for key, score in scores.items()
     ]
     caption = f"{first.people} annotated people without identities; no map, no odometry; reach {options.reach:g} m"
-    head = ("detector, tracker", "precision", "recall", "F1", "error [m]", "positions")
+    head = ("detector, tracker", "precision", "recall", "F1", "error [m]", "positions", "false a scan")
     print_table(f"{name}, recorded scans", head, table, caption)
     return 0
 
 
-def read_annotated(source: str) -> Iterable[AnnotatedScan]:
-    """Return the recorded scans of a file or a folder."""
-    from crowdbot.evaluation import read_drow, read_frog, read_lcas
+def read_annotated(options: argparse.Namespace) -> Iterable[AnnotatedScan]:
+    """Return the recorded scans of the source, a file or a folder."""
+    from crowdbot.core import InputError
+    from crowdbot.evaluation import read_drow, read_frog, read_lcas, read_scan_bag
 
+    source = options.source
+    if bags := _bags(source):
+        return itertools.chain.from_iterable(read_scan_bag(bag, options.sensor, options.nobody) for bag in bags)
+    if options.nobody or options.sensor:
+        raise InputError("--nobody and --sensor are not for files of DROW and FROG and folders of L-CAS")
     if Path(source).is_dir():
         return read_lcas(source)
     return read_frog(source) if source.endswith(FROG_SUFFIXES) else read_drow(source)

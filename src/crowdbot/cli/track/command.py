@@ -57,7 +57,7 @@ def print_statistics(options: argparse.Namespace) -> int:
 
     if is_annotated(options.source):
         title = Path(options.source).name
-        bands, missing = scan_statistics(_annotated(options.source))
+        bands, missing = scan_statistics(_annotated(options))
     else:
         options.detector = options.detector or ["lidar-clusters"]
         with progress(options.json) as report:
@@ -82,8 +82,8 @@ def _shown(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.2f}"
 
 
-def _annotated(source: str) -> Iterator[tuple[Any, Any]]:
-    for row in read_annotated(source):
+def _annotated(options: argparse.Namespace) -> Iterator[tuple[Any, Any]]:
+    for row in read_annotated(options):
         if row.people is not None:
             yield row.scan, row.people
 
@@ -99,7 +99,8 @@ def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add = parser.add_argument
     add("source", metavar="SOURCE", nargs="?", help="trial file, name of a built-in trial,"
-        " episode (.mcap), or recorded scans with annotated people (DROW .csv, FROG .h5, folder of L-CAS)")  # fmt: skip
+        " episode (.mcap), or recorded scans with annotated people (DROW .csv, FROG .h5, folder of L-CAS, .bag of"
+        " leg_tracker)")  # fmt: skip
     add("--scenes", action="store_true", help="five scenes instead of SOURCE: low density, high density, occlusion,"
         " noise, moving robot")  # fmt: skip
     add_choice(parser)
@@ -112,6 +113,8 @@ def arguments(parser: CommandParser) -> None:
         " are compared; for a video the predictor of the tracks (default: none, or constant-velocity)")  # fmt: skip
     add("--statistics", action="store_true", help="count the returns of people in the scans, by distance, instead of"
         " tracking them")  # fmt: skip
+    add("--nobody", action="store_true", help="nobody is in the scans of a bag (.bag, .db3) without labels: each"
+        " position is false")  # fmt: skip
     add("--no-map", action="store_true", help="do not tell the detector the walls of the stage")
     add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker")
     add_video(parser)

@@ -43,11 +43,14 @@ class AnnotatedScan(NamedTuple):
         scan: the scan; its pose is that of the scanner at the origin.
         people: ``[N, 2]`` positions in the frame of the scanner [m]; None if nobody has annotated the scan.
         ignored: ``[B, 4]`` boxes x, y, x, y [m] in which detections are neither right nor wrong, such as groups.
+        sector: half angle around the x axis [rad] and range [m] outside which nobody has annotated people, and
+            detections are neither right nor wrong, too; None for everywhere.
     """
 
     scan: Reading
     people: Floats | None
     ignored: Floats = NO_BOXES
+    sector: tuple[float, float] | None = None
 
 
 def planar_scan(time: float, ranges: Floats, angles: Floats, max_range: float, pose: Pose | None = None) -> Scan:

@@ -27,6 +27,7 @@ class DetectionScores(NamedTuple):
         precision, recall, f1: of the pairs within reach.
         error: mean distance of the pairs [m].
         people, detections: numbers in all annotated scans.
+        false_rate: detections of nobody in an annotated scan.
     """
 
     precision: float
@@ -35,6 +36,7 @@ class DetectionScores(NamedTuple):
     error: float
     people: int
     detections: int
+    false_rate: float
 
 
 @dataclass
@@ -42,6 +44,7 @@ class _Count:
     """Counts of one detector or tracker."""
 
     reach: float
+    scans: int = 0
     people: int = 0
     detections: int = 0
     right: int = 0
@@ -55,7 +58,12 @@ class _Count:
         box = row.ignored[:, None]
         inside = ((place >= box[..., :2]) & (place <= box[..., 2:])).all(axis=-1)
         left_out = np.asarray(inside.any(axis=0), dtype=np.bool_)
+        if row.sector is not None:
+            half, reach = row.sector
+            left_out |= np.abs(np.arctan2(place[:, 1], place[:, 0])) > half
+            left_out |= np.hypot(place[:, 0], place[:, 1]) > reach
         left_out[b] = False
+        self.scans += 1
         self.right += len(a)
         self.distance += float(away[a, b].sum())
         self.people += len(row.people)
@@ -71,6 +79,7 @@ class _Count:
             self.distance / self.right if self.right else math.nan,
             self.people,
             self.detections,
+            (self.detections - self.right) / self.scans,
         )
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from crowdbot.core import DataError
 from crowdbot.data.mcap_reader import McapChannel, McapError, McapReader, has_summary
-from crowdbot.data.source import Source
+from crowdbot.data.source import Source, parse_errors
 
 Wanted = Callable[[str, str], bool]
 """Whether the messages of a topic and a type are read."""
@@ -41,7 +42,25 @@ def read_bag(source: Source, wanted: Wanted, receive: Receive) -> Bag:
         McapError: the MCAP file is damaged.
         DataError: the SQLite file is no bag.
     """
-    return {"mcap": _read_mcap, "sqlite": _read_sqlite, "rosbag": _read_ros1}[source.kind](source, wanted, receive)
+    return STORAGES[source.kind](source, wanted, receive)
+
+
+def read_bag_messages(path: Path | str, wanted: Wanted, receive: Receive) -> Bag:
+    """Read the wanted messages of a bag in their order, see :func:`read_bag`.
+
+    Args:
+        path: the file, of MCAP or SQLite (ROS 2), or of ROS 1.
+        wanted: whether the messages of a topic and a type are read.
+        receive: takes topic, type, and a function that decodes the message.
+
+    Raises:
+        DataError: the file is missing, no bag, or damaged.
+    """
+    source = Source.of(Path(path))
+    if source.kind not in STORAGES:
+        raise DataError(f"{path} is no bag: it must be MCAP or SQLite of ROS 2, or a bag of ROS 1")
+    with parse_errors(source, "a bag"):
+        return read_bag(source, wanted, receive)
 
 
 def _read_mcap(source: Source, wanted: Wanted, receive: Receive) -> Bag:
@@ -103,6 +122,10 @@ def _read_ros1(source: Source, wanted: Wanted, receive: Receive) -> Bag:
         for connection, _, data in reader.messages(chosen) if chosen else ():
             receive(connection.topic, connection.msgtype, types.decoder(data, connection.msgtype))
         return Bag({connection.topic: connection.msgtype for connection in reader.connections})
+
+
+STORAGES = {"mcap": _read_mcap, "sqlite": _read_sqlite, "rosbag": _read_ros1}
+"""Readers by kind of the file."""
 
 
 class _Types:
