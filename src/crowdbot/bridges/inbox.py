@@ -12,7 +12,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
 
 from .fields import memory_size
-from .interface import InputTopic, RobotInterface, read_stamp
+from .interface import InputTopic, Request, RobotInterface, read_stamp
 from .run_control import CommandLatency
 
 SLOWEST, FASTEST = 0.001, 100.0
@@ -133,7 +133,7 @@ class Inbox:
         """Robots whose command has the stamp of the current instant."""
         self._now, self._taken = 0, -1
         self._velocity: dict[str, VelocityOrder] = {}
-        self._orders: deque[Order] = deque()
+        self._orders: deque[Request] = deque()
         self._calls: deque[ServiceCall] = deque()
         self._order_memory = self._call_memory = 0
         self._arrivals = self._seen = 0
@@ -152,7 +152,7 @@ class Inbox:
             InputError: there is no such input topic, a value is not allowed, or too many orders wait.
         """
         try:
-            orders = self._input(topic).orders(fields, sender)
+            orders = self._input(topic).requests(fields, sender)
             stamp = read_stamp(fields) if any(isinstance(order, VelocityOrder) for order in orders) else 0
         except InputError:
             self.count.refused += 1
@@ -186,7 +186,7 @@ class Inbox:
             self._call_memory += memory
             self._note()
 
-    def add(self, order: Order) -> None:
+    def add(self, order: Request) -> None:
         """Add an order for the current instant.
 
         Raises:
@@ -217,10 +217,10 @@ class Inbox:
         with self._news:
             self._note()
 
-    def take_orders(self) -> list[Order]:
+    def take_orders(self) -> list[Request]:
         """Return the orders that wait, and forget them."""
         with self._news:
-            orders: list[Order] = [*self._orders, *self._velocity.values()]
+            orders: list[Request] = [*self._orders, *self._velocity.values()]
             self._forget_orders()
             self._taken = self._now
             return orders
@@ -266,7 +266,7 @@ class Inbox:
         self._arrivals += 1
         self._news.notify_all()
 
-    def _add(self, order: Order, stamp: int = 0) -> None:
+    def _add(self, order: Request, stamp: int = 0) -> None:
         if isinstance(order, VelocityOrder):
             self.count.velocities += 1
             if self._is_stale(order.robot, stamp):

@@ -7,8 +7,9 @@ import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
+import numpy as np
 from rosbags.typesys import get_types_from_msg
 
 from crowdbot.core import InputError
@@ -16,6 +17,8 @@ from crowdbot.messages import COLLISIONS, FALL_POSES, FALLS, FORCES, MAP, MARKER
 from crowdbot.recording import LinkFrames
 from crowdbot.simulation import GoalOrder, JointOrder, Order, VelocityOrder, read_order
 from crowdbot.trials import RobotSpec, Trial
+
+from .joint_trajectory import JointTrajectory
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,11 @@ QUALITIES = (SENSOR, CLOCK, TF, LATCHED, STATE, COMMAND)
 
 
 Fields = Mapping[str, Any]
-MOST_JOINTS = 200
+Request = Order | JointTrajectory
+"""What a message asks of the simulation; a trajectory becomes one order for each joint and step."""
+MOST_JOINTS, MOST_POINTS = 200, 1000
+LONGEST_TIME = 2.0**32
+"""Largest time in a message [s]; the seconds of ROS have 32 bits."""
 
 
 def read_number(fields: Any, *path: str) -> float:
@@ -93,7 +100,7 @@ def read_heading(fields: Any, *path: str) -> float:
     return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
-def read_twist(fields: Fields, robot: str, sender: str) -> list[Order]:
+def read_twist(fields: Fields, robot: str, sender: str) -> list[Request]:
     """Return the command of ``geometry_msgs/Twist`` or ``TwistStamped``."""
     twist = fields.get("twist", fields)
     if not isinstance(twist, Mapping) or not ({"linear", "angular"} & {*twist}):
@@ -115,15 +122,18 @@ def read_stamp(fields: Fields) -> int:
     >>> read_stamp({"header": {"stamp": {"sec": 1, "nanosec": 50}}, "twist": {}}), read_stamp({"linear": {}})
     (1000000050, 0)
     """
-    head = ("header", "stamp")
-    if "twist" not in fields:
-        return 0
+    return _nanoseconds(fields, "header", "stamp") if "twist" in fields else 0
+
+
+def _nanoseconds(fields: Any, *path: str) -> int:
     names = (("sec", "secs"), ("nanosec", "nsecs"))  # ROS 2, ROS 1
-    seconds, nanoseconds = (sum(read_number(fields, *head, name) for name in pair) for pair in names)
+    seconds, nanoseconds = (sum(read_number(fields, *path, name) for name in pair) for pair in names)
+    if abs(seconds) > LONGEST_TIME:
+        raise InputError(f"{'.'.join(path)}: {seconds:g} s must be from -{LONGEST_TIME:g} to {LONGEST_TIME:g} s")
     return int(seconds) * 10**9 + int(nanoseconds)
 
 
-def read_goal(fields: Fields, robot: str, sender: str) -> list[Order]:
+def read_goal(fields: Fields, robot: str, sender: str) -> list[Request]:
     """Return the goal of ``geometry_msgs/PoseStamped``, in the frame of the map."""
     if not isinstance(fields.get("pose"), Mapping):
         raise InputError("a goal needs pose, as in geometry_msgs/PoseStamped")
@@ -135,39 +145,64 @@ def read_goal(fields: Fields, robot: str, sender: str) -> list[Order]:
     return [GoalOrder(robot=robot, x=x, y=y, source=sender)]
 
 
-def read_joints(fields: Fields, robot: str, sender: str) -> list[Order]:
+def read_joints(fields: Fields, robot: str, sender: str) -> list[Request]:
     """Return the joint targets of ``sensor_msgs/JointState``: names and positions."""
-    return _joints(fields.get("name"), fields.get("position"), robot, sender)
-
-
-def read_trajectory(fields: Fields, robot: str, sender: str) -> list[Order]:
-    """Return the joint targets of ``trajectory_msgs/JointTrajectory``: its last point."""
-    points = fields.get("points")
-    if not _is_list(points) or not points or not isinstance(points[-1], Mapping):
-        raise InputError("a trajectory needs points with positions")
-    return _joints(fields.get("joint_names"), points[-1].get("positions"), robot, sender)
-
-
-def _joints(names: Any, positions: Any, robot: str, sender: str) -> list[Order]:
-    positions = positions.tolist() if hasattr(positions, "tolist") else positions
-    if not _is_list(names) or not _is_list(positions) or len(names) != len(positions) or len(names) > MOST_JOINTS:
-        raise InputError("joint targets need as many names as positions")
-    if not all(isinstance(name, str) for name in names):
-        raise InputError("names of joints must be texts")
+    names = _joint_names(fields, "name")
+    positions = _joint_values(fields, "position", names, "")
     return [
-        JointOrder(robot=robot, joint=name, position=read_number({"position": value}, "position"), source=sender)
+        JointOrder(robot=robot, joint=name, position=value, source=sender)
         for name, value in zip(names, positions, strict=True)
     ]
 
 
-def read_order_text(fields: Fields, robot: str, sender: str) -> list[Order]:
+def read_trajectory(fields: Fields, robot: str, sender: str) -> list[Request]:
+    """Return the trajectory of ``trajectory_msgs/JointTrajectory``; accelerations and efforts are not used."""
+    names, points = _joint_names(fields, "joint_names"), fields.get("points")
+    if not _is_list(points) or not 0 < len(points) <= MOST_POINTS:
+        raise InputError(f"a joint trajectory needs points, from 1 to {MOST_POINTS}")
+    times, positions, velocities = [], [], []
+    for k, point in enumerate(points):
+        place = f"points[{k}]."
+        if not isinstance(point, Mapping):
+            raise InputError(f"{place[:-1]} is a {type(point).__name__}, it must be an object")
+        times.append(_nanoseconds(point, "time_from_start"))
+        positions.append(_joint_values(point, "positions", names, place))
+        given = len(_plain_list(point.get("velocities")) or ())
+        velocities.append(_joint_values(point, "velocities", names, place) if given else [math.nan] * len(names))
+    begin = _nanoseconds(fields, "header", "stamp")
+    arrays = np.array(times, dtype=np.int64), np.array(positions), np.array(velocities)
+    return [JointTrajectory(robot, tuple(names), begin, *arrays, sender)]
+
+
+def _joint_names(fields: Fields, key: str) -> list[str]:
+    names = fields.get(key)
+    if not _is_list(names) or not 0 < len(names) <= MOST_JOINTS or not all(isinstance(name, str) for name in names):
+        raise InputError(f"{key} must be a list of names of joints, from 1 to {MOST_JOINTS}")
+    if len({*names}) < len(names):
+        raise InputError(f"{key} has a joint twice: {', '.join(names)[:80]}")
+    return [*names]
+
+
+def _joint_values(fields: Fields, key: str, names: Sequence[str], place: str) -> list[float]:
+    values = _plain_list(fields.get(key))
+    if not _is_list(values) or len(values) != len(names):
+        count = len(values) if _is_list(values) else 0
+        raise InputError(f"{place}{key} has {count} numbers, it must have {len(names)}, one for each joint")
+    return [read_number({place + key: value}, place + key) for value in values]
+
+
+def _plain_list(values: Any) -> Any:
+    return values.tolist() if hasattr(values, "tolist") else values
+
+
+def read_order_text(fields: Fields, robot: str, sender: str) -> list[Request]:
     """Return the order of ``std_msgs/String`` as JSON, see :func:`crowdbot.simulation.read_order`."""
     if not isinstance(fields.get("data"), str):
         raise InputError("an order needs data with JSON, as in std_msgs/String")
     return [read_order(fields["data"])]
 
 
-def read_clock(fields: Fields, robot: str, sender: str) -> list[Order]:
+def read_clock(fields: Fields, robot: str, sender: str) -> list[Request]:
     """Check ``rosgraph_msgs/Clock``; it gives no order."""
     for word in ("sec", "nanosec"):
         value = read_number(fields, "clock", word)
@@ -178,11 +213,11 @@ def read_clock(fields: Fields, robot: str, sender: str) -> list[Order]:
     return []
 
 
-def _is_list(value: Any) -> bool:
+def _is_list(value: Any) -> TypeGuard[Sequence[Any]]:
     return isinstance(value, Sequence) and not isinstance(value, str | bytes)
 
 
-READERS: dict[str, Callable[[Fields, str, str], list[Order]]] = {
+READERS: dict[str, Callable[[Fields, str, str], list[Request]]] = {
     "geometry_msgs/msg/Twist": read_twist,
     "geometry_msgs/msg/TwistStamped": read_twist,
     "geometry_msgs/msg/PoseStamped": read_goal,
@@ -394,8 +429,8 @@ class InputTopic:
     quality: QualityOfService = COMMAND
     about: str = ""
 
-    def orders(self, fields: Mapping[str, Any], sender: str = "") -> list[Order]:
-        """Return the orders of a message.
+    def requests(self, fields: Mapping[str, Any], sender: str = "") -> list[Request]:
+        """Return what a message asks of the simulation.
 
         Raises:
             InputError: a value is not allowed.
@@ -557,6 +592,6 @@ def _robot_inputs(robot: RobotSpec) -> list[InputTopic]:
         joints, path = "sensor_msgs/msg/JointState", "trajectory_msgs/msg/JointTrajectory"
         rows += [
             InputTopic(f"/{name}/joint_command", (joints,), name, STATE, "joint positions"),
-            InputTopic(f"/{name}/joint_trajectory", (path,), name, STATE, "joint positions of the last point"),
+            InputTopic(f"/{name}/joint_trajectory", (path,), name, STATE, "joint positions at times"),
         ]
     return rows

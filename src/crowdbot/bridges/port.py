@@ -14,11 +14,12 @@ from crowdbot.core import InputError, Scene
 from crowdbot.messages import Messages
 from crowdbot.navigation import ExternalNavigator
 from crowdbot.recording import StepMessage, StepMessages
-from crowdbot.simulation import Order, Simulation, StepRecord
+from crowdbot.simulation import JointOrder, Order, Simulation, StepRecord
 from crowdbot.trials import RobotSpec, Stage, Trial
 
 from .inbox import Inbox
-from .interface import RobotInterface
+from .interface import Request, RobotInterface
+from .joint_trajectory import JointMotions, JointTrajectory
 from .run_control import RunControl
 from .simulation_services import answer_call
 from .transport import Transport
@@ -141,6 +142,7 @@ class BridgePort:
         self.inbox = Inbox(self.interface)
         self._steps: StepMessages | None = None
         self._skipped: set[str] = set()
+        self._motions = JointMotions()
 
     def describe(self, trial: Trial) -> RobotInterface:
         """Return the topics and services of a trial."""
@@ -161,6 +163,7 @@ class BridgePort:
         self._announce(trial)
         self.inbox.clear(self.interface)
         self.control.spawned.clear()
+        self._motions = JointMotions()
 
     def begin(self, simulation: Simulation) -> None:
         """Send the map and the first instant of a simulation that has begun."""
@@ -198,16 +201,29 @@ class BridgePort:
 
     def take_orders(self, simulation: Simulation) -> list[Order]:
         """Return the orders for the current instant; what is impossible now is reported to the other programs."""
-        orders = []
-        for order in self.inbox.take_orders():
-            try:
-                order.check(simulation)
-            except InputError as error:
-                self.inbox.count.refused += 1
-                self.report("error", str(error))
-                continue
-            orders.append(order)
+        orders = list[Order]()
+        for request in self.inbox.take_orders():
+            self._take(request, simulation, orders)
+            if isinstance(request, JointOrder):
+                self._motions.stop(request.robot, request.joint)
+        for target in self._motions.targets(simulation):
+            if not self._take(target, simulation, orders):
+                self._motions.stop(target.robot, target.joint)
         return orders
+
+    def _take(self, request: Request, simulation: Simulation, orders: list[Order]) -> bool:
+        """Append an order, or begin a trajectory; return whether it is possible now."""
+        try:
+            if isinstance(request, JointTrajectory):
+                self._motions.begin(request, simulation)
+                return True
+            request.check(simulation)
+        except InputError as error:
+            self.inbox.count.refused += 1
+            self.report("error", str(error))
+            return False
+        orders.append(request)
+        return True
 
     def serve(self, simulation: Simulation) -> None:
         """Answer the calls that wait."""

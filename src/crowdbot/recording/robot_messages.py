@@ -15,7 +15,7 @@ from crowdbot.sensors import Odometry, Reading, WheelGeometry, planar_pose
 from crowdbot.simulation import Simulation, StepRecord
 from crowdbot.trials import RobotSpec
 from crowdbot.typing import Floats
-from crowdbot.world import RobotBody, free_joints, joint_states, quaternion, robot_description, simulated_body
+from crowdbot.world import RobotBody, joint_states, quaternion, robot_description, simulated_body
 
 from .metadata import GROUND_TRUTH
 
@@ -191,22 +191,13 @@ class RobotMessages:
         robot, simulation = frame.robots[k], self.simulation
         if simulation is None:
             return joint_states(None, 0, robot.body)
-        agent = _agent(frame, k)
-        return joint_states(simulation.world, agent, robot.body, targets=self._targets(robot))
+        targets = next((one.joint_targets(0) for one in simulation.robots if one.robot.name == robot.name), {})
+        return joint_states(simulation.world, _agent(frame, k), robot.body, targets=targets)
 
     @staticmethod
     def has_topic(robot: RobotSpec, name: str) -> bool:
         """Return whether no sensor of the robot has taken the topic ``/<robot>/name``."""
         return all(mount.name != name for mount in robot.sensors)
-
-    def _targets(self, robot: RobotSpec) -> dict[str, float]:
-        """Return the joint positions in the plane that an order has set."""
-        assert self.simulation is not None
-        for control in self.simulation.robots:
-            if control.robot.name == robot.name:
-                row = zip(free_joints(robot.body), control.joints[0].tolist(), strict=True)
-                return {name: value for name, value in row if not math.isnan(value)}
-        return {}
 
     def _listen(self, frame: StepRecord) -> None:
         """Take the readings of the first odometry of each robot; a branch begins after earlier ones."""

@@ -154,6 +154,11 @@ class RobotControl:
             begin_tracking(count) if robot.people == "tracked" else [],
         )
 
+    def joint_targets(self, environment: int) -> dict[str, float]:
+        """Targets [rad or m] of the joints that have one in an environment."""
+        row = zip(free_joints(self.robot.body), self.joints[environment].tolist(), strict=True)
+        return {name: value for name, value in row if not math.isnan(value)}
+
     def change_memory(self, trial: Trial, robot: RobotSpec) -> RobotControl:
         """Return the state with paths and tracks for another specification of the robot.
 

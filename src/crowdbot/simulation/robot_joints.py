@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,7 +23,7 @@ def move_robot_joint(control: RobotControl, world: World, environment: int, join
 def restore_joints(control: RobotControl, world: World) -> None:
     """Apply the targets of all environments again, after the robot or its sensors were replaced."""
     for e in np.flatnonzero(~np.isnan(control.joints).all(axis=1)).tolist():
-        for joint, position in _targets(control, e).items():
+        for joint, position in control.joint_targets(e).items():
             move_joint(world, control.agent, joint, position, e)
         _place_sensors(control, world, e)
 
@@ -38,7 +35,7 @@ def tilt_problem(control: RobotControl, world: World, environment: int, joint: s
     """
     if world.walls_fixed:
         return ""
-    joints = {**_targets(control, environment), joint: position}
+    joints = {**control.joint_targets(environment), joint: position}
     for sensor in control.sensors:
         if sensor.mount.link and not sensor.space:
             _, _, _, roll, pitch, _ = control.robot.sensor_pose(sensor.mount, joints)
@@ -50,19 +47,11 @@ def tilt_problem(control: RobotControl, world: World, environment: int, joint: s
     return ""
 
 
-def _targets(control: RobotControl, environment: int) -> dict[str, float]:
-    """Return the targets of the joints that have one in an environment."""
-    row = control.joints[environment].tolist()
-    return {
-        name: value for name, value in zip(free_joints(control.robot.body), row, strict=True) if not math.isnan(value)
-    }
-
-
 def _place_sensors(control: RobotControl, world: World, environment: int) -> None:
     """Move the sensors on links; the physics world moves them itself."""
     if world.walls_fixed:
         return
-    joints: Mapping[str, float] = _targets(control, environment)
+    joints = control.joint_targets(environment)
     for sensor in control.sensors:
         if sensor.mount.link:
             sensor.move(environment, control.robot.sensor_pose(sensor.mount, joints))
