@@ -21,6 +21,7 @@ from crowdbot.humans import (
     posing_and_skinning,
 )
 from crowdbot.humans.asset import LEVELS, shapes
+from crowdbot.humans.garments import drape
 from crowdbot.humans.people import skin_vertices
 
 
@@ -126,7 +127,9 @@ def test_coarse_limbs_are_as_thick_as_the_fine_ones():
 def test_the_kernel_skins_as_numpy_does():
     gait, _, postures, _, _ = walk(lambda t: (1.3 * t, 0.0, 0.0), 0.5, 0.05, moving=True)
     people, level, now = gait.people, shapes().levels[1], postures[-1]
-    rest = level.rest[people.body] * people.scale[:, None, None]
+    cloth, size = drape(1), people.height / drape(1).height
+    worn = cloth.shift[people.cuts[:, cloth.group], np.arange(len(cloth.group))]
+    rest = level.rest[people.body] * people.scale[:, None, None] + worn * size[:, None, None]
     head = people.measures.head
     shift = now.position - np.einsum("nbij,nbj->nbi", now.rotation, head)
     expected = sum(
@@ -134,7 +137,9 @@ def test_the_kernel_skins_as_numpy_does():
         * (np.einsum("nvij,nvj->nvi", now.rotation[:, level.bones[:, k]], rest) + shift[:, level.bones[:, k]])
         for k in range(4)
     )
-    found = skin_vertices(level, people.body, people.scale, head, now.rotation, now.position)
+    found = skin_vertices(
+        level, cloth, people.cuts, size, people.body, people.scale, head, now.rotation, now.position
+    )  # fmt: skip
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 

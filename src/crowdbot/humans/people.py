@@ -16,6 +16,7 @@ from crowdbot.typing import Floats, Ints
 from .activities import ACTIVITIES
 from .asset import LEVELS, Level, Person, drawable, person, persons, shapes
 from .clip import Clip
+from .garments import Drape, bare, drape, garment_cuts
 from .limbs import LIMBS, mass_shares
 from .posture import Measures, Posture, measures
 from .rigged.body_rows import BodyRows, body_rows
@@ -33,14 +34,16 @@ class SkinnedMesh(NamedTuple):
 
 @kernel
 def _skin(
-    rest: Floats, bones: Ints, weights: Floats, body: Ints, scale: Floats, rotation: Floats, shift: Floats, out: Floats
-) -> None:
-    """Write ``sum_k w_k (R_k x + t_k)`` for each vertex x of each person."""
+    rest: Floats, bones: Ints, weights: Floats, body: Ints, scale: Floats, rotation: Floats, shift: Floats,
+    cloth: Floats, group: Ints, cuts: Ints, size: Floats, out: Floats,
+) -> None:  # fmt: skip
+    """Write ``sum_k w_k (R_k x + t_k)`` for each vertex x of each person, in clothes."""
     for i in range(len(out)):
         for v in range(bones.shape[0]):
-            x = rest[body[i], v, 0] * scale[i]
-            y = rest[body[i], v, 1] * scale[i]
-            z = rest[body[i], v, 2] * scale[i]
+            cut = cuts[i, group[v]]
+            x = rest[body[i], v, 0] * scale[i] + cloth[cut, v, 0] * size[i]
+            y = rest[body[i], v, 1] * scale[i] + cloth[cut, v, 1] * size[i]
+            z = rest[body[i], v, 2] * scale[i] + cloth[cut, v, 2] * size[i]
             sx, sy, sz = 0.0, 0.0, 0.0
             for k in range(bones.shape[1]):
                 w = weights[v, k]
@@ -55,12 +58,16 @@ def _skin(
 
 
 def skin_vertices(
-    mesh: SkinnedMesh, body: Ints, scale: Floats, head: Floats, rotation: Floats, position: Floats
-) -> Floats:
+    mesh: SkinnedMesh, cloth: Drape, cuts: Ints, size: Floats, body: Ints, scale: Floats, head: Floats,
+    rotation: Floats, position: Floats,
+) -> Floats:  # fmt: skip
     """Return the vertices ``[N, V, 3]`` [m] of posed people.
 
     Args:
         mesh: rest shapes and weights.
+        cloth: how far clothes hang off the mesh.
+        cuts: cut of each group of vertices ``[N, G]``.
+        size: ratio of stature to that of ``cloth`` ``[N]``.
         body: row of the rest shape ``[N]``.
         scale: ratio of stature to that of the rest shape ``[N]``.
         head: scaled start of each bone at rest ``[N, B, 3]`` [m].
@@ -68,7 +75,9 @@ def skin_vertices(
     """
     shift = position - np.einsum("nbij,nbj->nbi", rotation, head)
     out = np.empty((len(body), len(mesh.bones), 3))
-    _skin(mesh.rest, mesh.bones, mesh.weights, body, scale, rotation, shift, out)
+    _skin(
+        mesh.rest, mesh.bones, mesh.weights, body, scale, rotation, shift, cloth.shift, cloth.group, cuts, size, out
+    )  # fmt: skip
     return out
 
 
@@ -219,6 +228,12 @@ class People:
         """Outfit of each person."""
         return tuple(outfit(p, int(v)) for p, v in zip(self.persons, self.variation, strict=True))
 
+    @functools.cached_property
+    def cuts(self) -> Ints:
+        """Cut of shirt, sleeves and trousers of each person ``[N, 3]``; imported bodies have none."""
+        cuts = np.array([garment_cuts(worn) for worn in self.outfits], dtype=np.int64).reshape(len(self), 3)
+        return np.where(self.own_body[:, None] >= 0, 0, cuts)
+
     def limbs(self, posture: Posture) -> Capsules:
         """Return the capsules of all people in world coordinates."""
         bones = [shapes().bone(limb.bone) for limb in LIMBS]
@@ -236,14 +251,14 @@ class People:
 
         Args:
             posture: posture of these people.
-            level: level of detail, from 0 (4198 vertices) to 2 (447 vertices).
+            level: level of detail, from 0 (4198 vertices) to 2 (447 vertices). Clothes hang off the body at each.
             numbers: only these people (default: all).
         """
         whole = np.arange(len(self)) if numbers is None else numbers
         mesh = self.mesh(level)
         if not self.own:
             common = mesh.included
-            return self._skin(whole, SkinnedMesh(common.rest, common.bones, common.weights), posture)
+            return self._skin(whole, SkinnedMesh(common.rest, common.bones, common.weights), drape(level), posture)
         result = np.zeros((len(whole), mesh.points[-1], 3))
         for k in range(-1, len(self.own)):
             rows = np.flatnonzero(self.own_body[whole] == k)
@@ -251,14 +266,16 @@ class People:
             rest = own.rest if k < 0 else own.rest[None]
             if len(rows):
                 skinned = SkinnedMesh(rest, own.bones, own.weights)
-                result[rows, mesh.vertex_span(k)] = self._skin(whole[rows], skinned, posture)
+                cloth = drape(level) if k < 0 else bare(rest.shape[1])
+                result[rows, mesh.vertex_span(k)] = self._skin(whole[rows], skinned, cloth, posture)
         return result
 
-    def _skin(self, rows: Ints, mesh: SkinnedMesh, posture: Posture) -> Floats:
+    def _skin(self, rows: Ints, mesh: SkinnedMesh, cloth: Drape, posture: Posture) -> Floats:
         body = self.body[rows] if len(mesh.rest) > 1 else np.zeros(len(rows), dtype=np.int64)
         return skin_vertices(
-            mesh, body, self.scale[rows], self.measures.head[rows], posture.rotation[rows], posture.position[rows]
-        )
+            mesh, cloth, self.cuts[rows], self.height[rows] / cloth.height, body, self.scale[rows],
+            self.measures.head[rows], posture.rotation[rows], posture.position[rows],
+        )  # fmt: skip
 
     def mesh(self, level: int = 2) -> GroupMesh:
         """Return the vertices and triangles of all bodies of the group at a level of detail.
