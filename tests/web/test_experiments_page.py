@@ -38,6 +38,7 @@ def test_a_participant_answers_and_watches_while_the_operator_controls(experimen
     operator.get_by_text("alone (trial):").wait_for()
     operator.get_by_role("button", name="Pause").click()
     participant.get_by_text("Please wait.").wait_for()
+    operator.get_by_text("State: paused").wait_for()
     operator.get_by_role("button", name="Resume").click()
     participant.get_by_text("Now the robot meets a person").wait_for()
 
@@ -45,6 +46,7 @@ def test_a_participant_answers_and_watches_while_the_operator_controls(experimen
     operator.get_by_label("Reason").fill("the test is over")
     operator.get_by_role("button", name="Abort the session").click()
     participant.get_by_text("The session has ended: the test is over").wait_for()
+    operator.get_by_text("State: ended early (the test is over)").wait_for()
     log = next((app.folder / "experiments").glob("*/participant-001/session.jsonl")).read_text()
     assert '"abort"' in log
     assert "the test is over" in log

@@ -44,6 +44,25 @@ def test_a_job_survives_a_reload_and_gives_its_results(done, app, axe):
     assert not (app.folder / "falsifications/tries").exists()
 
 
+def test_what_was_typed_stays_while_other_forms_and_tabs_are_looked_at(page):
+    page.get_by_role("button", name="Search for failures").click()
+    form = page.get_by_role("form", name="Search for failures")
+    form.get_by_label("Navigator").fill("orca")
+    form.locator("select[name=search]").select_option("plain")
+    form.get_by_label("Runs").fill("17")
+    page.get_by_role("button", name="Generate data").click()
+    page.get_by_label("Trials or a recipe").select_option(["frontal", "bottleneck"])
+    page.locator("#tab-simulator").click()
+    page.locator("#tab-jobs").click()
+    chosen = "(list) => [...list.selectedOptions].map((one) => one.value)"
+    expect(page.get_by_role("form", name="Generate data")).to_be_visible()
+    assert sorted(page.get_by_label("Trials or a recipe").evaluate(chosen)) == ["bottleneck", "frontal"]
+    page.get_by_role("button", name="Search for failures").click()
+    expect(form.get_by_label("Navigator")).to_have_value("orca")
+    expect(form.locator("select[name=search]")).to_have_value("plain")
+    expect(form.get_by_label("Runs")).to_have_value("17")
+
+
 def test_errors_are_shown_at_the_job_and_the_work_is_cancelled(page, axe):
     page.get_by_role("button", name="Generate data").click()
     page.get_by_role("form").get_by_role("button", name="Start").click()

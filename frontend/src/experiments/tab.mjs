@@ -13,6 +13,16 @@ function streamsNote({ send, record = [] }) {
   return parts.length ? h("p", { class: "note" }, `Lab Streaming Layer: ${parts.join("; ")}`) : null;
 }
 
+const PHASES = {
+  ready: "not begun",
+  screen: "at a page with text or questions",
+  trial: "a trial is about to begin",
+  running: "a trial runs",
+  pause: "paused",
+  done: "complete",
+  aborted: "ended early",
+};
+
 class ExperimentsTab {
   constructor(root, app) {
     Object.assign(this, { root, app, state: { open: false }, form: null });
@@ -117,7 +127,7 @@ class ExperimentsTab {
   }
 
   showEnd() {
-    const text = this.state.phase === "done" ? "The session is complete. Thank you." : `The session has ended: ${this.state.reason || this.state.phase}`;
+    const text = this.state.phase === "done" ? "The session is complete. Thank you." : `The session has ended${this.state.reason ? `: ${this.state.reason}` : "."}`;
     fill(this.screen, h("h2", {}, text));
   }
 
@@ -131,7 +141,7 @@ class ExperimentsTab {
     return fill(
       this.side,
       h("h2", {}, `${state.experiment}, participant ${state.participant}`),
-      h("p", {}, `State: ${state.phase}${state.reason ? ` (${state.reason})` : ""}`),
+      h("p", {}, `State: ${PHASES[state.phase]}${state.reason ? ` (${state.reason})` : ""}`),
       h("ol", { class: "steps" }, state.steps.map((one, i) => this.step(one, i))),
       h("div", { class: "row" }, button("Pause", "pause"), button("Resume", "resume"), button("Repeat the trial", "repeat"), skip),
       h(

@@ -9,7 +9,7 @@ import { jobRow, units } from "./job_row.mjs";
 
 class JobsTab {
   constructor(root, app) {
-    Object.assign(this, { app, root, kind: null, rows: new Map(), state: { jobs: [] } });
+    Object.assign(this, { app, root, kind: null, made: null, typed: {}, rows: new Map(), state: { jobs: [] } });
     this.form = h("div", {});
     this.starters = h("div", { class: "starters" });
     this.list = h("ul", { class: "jobs-list", "aria-label": "List of jobs" });
@@ -33,7 +33,7 @@ class JobsTab {
     await this.refresh();
   }
 
-  /** Fetches the forms anew, since their lists name the files of the session. */
+  /** Fetches the forms anew, since their lists name the files of the session; what was typed stays. */
   async refresh() {
     const forms = await this.call("forms");
     if (!forms) return;
@@ -49,10 +49,11 @@ class JobsTab {
 
   choose(kind) {
     const form = this.forms.find((one) => one.kind === kind) ?? this.forms[0];
+    if (this.made) this.typed[this.kind] = this.made.changed();
     this.kind = form.kind;
     if (this.app.keys.active === "jobs") this.app.remember({ job: form.kind });
     [...this.starters.children].forEach((one, i) => one.setAttribute("aria-pressed", String(this.forms[i] === form)));
-    const made = makeForm(form.rows);
+    const made = (this.made = makeForm(form.rows, undefined, this.typed[form.kind]));
     const start = async (event) => {
       event.preventDefault();
       await this.call("begin", { kind: form.kind, values: made.values() });

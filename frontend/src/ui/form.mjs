@@ -4,10 +4,12 @@ import { field, h } from "./dom.mjs";
 /**
  * Makes the fields of a form. Each row of the table is
  * {name, label, kind: "number"|"whole"|"text"|"choice"|"several"|"switch", value, unit?, low?, high?, step?, choices?, note?}.
- * Returns {element, values()}.
+ * `typed` holds values that are shown in place of those of the table, by name.
+ * Returns {element, values(), changed()}: all values, and those that differ from the table.
  */
-export function makeForm(rows, onchange = () => {}) {
-  const controls = rows.map((row) => [row, control(row)]);
+export function makeForm(rows, onchange = () => {}, typed = {}) {
+  const controls = rows.map((row) => [row, control(row.name in typed ? { ...row, value: typed[row.name] } : row)]);
+  const given = Object.fromEntries(rows.map((row) => [row.name, JSON.stringify(read(row, control(row)))]));
   for (const [, one] of controls) one.addEventListener("change", onchange);
   const element = h(
     "div",
@@ -15,7 +17,8 @@ export function makeForm(rows, onchange = () => {}) {
     controls.map(([row, one]) => field(row.unit ? `${row.label} [${row.unit}]` : row.label, one, row.note)),
   );
   const values = () => Object.fromEntries(controls.map(([row, one]) => [row.name, read(row, one)]));
-  return { element, values };
+  const changed = () => Object.fromEntries(Object.entries(values()).filter(([name, value]) => JSON.stringify(value) !== given[name]));
+  return { element, values, changed };
 }
 
 function control(row) {
