@@ -8,6 +8,7 @@ import json
 import random
 import re
 import socket
+import struct
 import subprocess
 import sys
 import time
@@ -32,6 +33,8 @@ PER_CLIENT = 1000
 """Frames of a client; then another one comes."""
 LARGEST = 50_000
 """Largest growth of the memory [kB]."""
+BEGUN = 2.0
+"""Simulated time [s] at which a simulation has loaded its kernels."""
 MEETING = """<trial name="meeting" duration="3600"><stage/><crowd type="orca"/>
 <avatar name="guest" source="external" x="1" y="0.5"/><agent x="4" y="1.2" goal="-5,1.2"/><end collision="false"/>
 </trial>"""
@@ -173,12 +176,56 @@ def state_of_app(port):
     return None
 
 
+def wait_for_scans(port):
+    """Wait until the scans of a robot over rosbridge are late enough."""
+    with connect(f"ws://127.0.0.1:{port}") as ws:
+        ws.send(json.dumps({"op": "subscribe", "topic": "/robot/scan"}))
+        while True:
+            frame = json.loads(ws.recv(timeout=60.0))
+            if frame.get("topic") == "/robot/scan" and frame["msg"]["header"]["stamp"]["sec"] >= BEGUN:
+                return
+
+
+def wait_for_time(port):
+    """Wait until the time over Foxglove is late enough."""
+    with connect(f"ws://127.0.0.1:{port}", subprotocols=["foxglove.sdk.v1"], max_size=None) as ws:
+        ws.send(json.dumps({"op": "advertise", "channels": [{"id": 1, "topic": "/robot/cmd_vel", "encoding": "json",
+                                                             "schemaName": "geometry_msgs/Twist"}]}))  # fmt: skip
+        while True:
+            frame = ws.recv(timeout=60.0)
+            if isinstance(frame, bytes) and frame[0] == 2 and struct.unpack_from("<BQ", frame)[1] >= BEGUN * 1e9:
+                return
+
+
+def ask_for_time(port):
+    """Ask the challenge until its time is late enough."""
+    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as client:
+        while True:
+            client.sendall(b"vel_cmd=0.1 10;")
+            reply = b""
+            while not reply.endswith(b"@"):
+                reply += client.recv(65536)
+            if float(re.match(rb"clock=\d+#([\d.]+);", reply)[1]) >= BEGUN:
+                return
+
+
+def wait_for_status(port):
+    """Wait until the time of the simulator of the app is late enough."""
+    with connect(f"ws://127.0.0.1:{port}/api/main/socket", max_size=None) as ws:
+        while True:
+            frame = ws.recv(timeout=60.0)
+            told = json.loads(frame) if isinstance(frame, str) else {}
+            if told.get("event") == "simulator.status" and (told["data"].get("time") or 0.0) >= BEGUN:
+                return
+
+
 class Server(NamedTuple):
-    """A program with a server, an attack, and what a good client sees."""
+    """A program with a server, an attack, what a good client sees, and the wait for a simulation that has begun."""
 
     words: Callable[[int, Path], list[str]]
     attack: Callable[[int, int, random.Random], None]
     answer: Callable[[int], int | None]
+    begin: Callable[[int], None]
 
 
 def run(kind):
@@ -186,24 +233,28 @@ def run(kind):
 
 
 SERVERS = {
-    "rosbridge": Server(run("rosbridge"), functools.partial(sockets, "", rosbridge_frame, None), state_of_run),
+    "rosbridge": Server(run("rosbridge"), functools.partial(sockets, "", rosbridge_frame, None), state_of_run,
+                        wait_for_scans),
     "join": Server(
         lambda port, folder: ["join", "frontal", *ENDLESS, "--area=-9,-9,9,9", "--bridge", f"rosbridge:{port}"],
         functools.partial(sockets, "", rosbridge_frame, None),
         stop_of_join,
+        wait_for_scans,
     ),
     "foxglove": Server(
         run("foxglove"),
         functools.partial(sockets, "", test_foxglove_protocol.hostile_frame, ["foxglove.sdk.v1"]),
         time_of_run,
+        wait_for_time,
     ),
-    "tcp": Server(run("tcp"), requests, reply_of_run),
+    "tcp": Server(run("tcp"), requests, reply_of_run, ask_for_time),
     "headset": Server(
         lambda port, folder: [
             "app", "--no-browser", "--port", str(port), "--folder", str(folder), "--open", str(folder / "meeting.xml")
         ],
         functools.partial(sockets, "api/main/headset", headset_frame, None, reads=True),
         state_of_app,
+        wait_for_status,
     ),
 }  # fmt: skip
 """The app has a test of its own, with torn frames: tests/web/server/test_hostile_frames.py."""
@@ -226,7 +277,7 @@ def test_hostile_frames_leave_a_running_server_as_it_was(kind, frames, tmp_path)
                 break
             assert process.poll() is None, errors.read_text()
             time.sleep(0.1)
-        server.attack(port, frames // 5, rng)  # what is loaded at the first use, and buffers of slow clients
+        server.begin(port)  # the first steps of a simulation load its kernels, tens of MB
         before = resident(process)
         server.attack(port, frames, rng)
         assert server.answer(port) in (1, 2)  # a frame may ask for a step, which pauses
