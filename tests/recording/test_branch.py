@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import EpisodeError, InputError, TrialError
 from crowdbot.data import McapReader
-from crowdbot.recording import branch, read_episode, record, replay, run
+from crowdbot.recording import branch, is_latched, read_episode, record, replay, run
 from crowdbot.trials import apply_values, parse_trial
 from episode_copies import copy_episode
 from space_trials import LEAN, room
@@ -34,11 +34,6 @@ def flowing(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("flowing")
     record(FLOWING, out=folder)
     return folder / "episode.mcap"
-
-
-def is_latched(topic: str) -> bool:
-    """Whether each file has the topic at its start, and again when frames are new."""
-    return topic == "/tf_static" or topic.endswith("/robot_description")
 
 
 def messages(path: Path, begin: float = 0.0) -> list[tuple[str, int, bytes]]:

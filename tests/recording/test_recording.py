@@ -73,7 +73,7 @@ def expected(episode: Episode) -> dict[str, int]:
     count = len(episode.times)
     robot = ("/robot/odom", "/robot/ground_truth/odom", "/robot/cmd_vel", "/robot/scan", "/robot/scan/reading")
     topics = dict.fromkeys(("/clock", "/tf", "/people", *robot), count)
-    topics |= {"/tf_static": 1, "/robot/robot_description": 1}
+    topics |= {"/tf_static": 1, "/map": 1, "/robot/robot_description": 1}
     topics["/crowdbot/digest"] = count
     return topics | {"/crowd/markers": 9}
 

@@ -148,7 +148,7 @@ def test_the_frames_are_one_tree_with_every_link_and_every_sensor(recorded: Reco
 
 
 def test_what_is_latched_is_written_once_and_first(recorded: Recorded) -> None:
-    latched = {"/tf_static", "/one/robot_description", "/two/robot_description"}
+    latched = {"/map", "/tf_static", "/one/robot_description", "/two/robot_description"}
     with recorded.path.open("rb") as stream:
         reader = make_reader(stream, validate_crcs=True)
         summary = reader.get_summary()
@@ -158,7 +158,7 @@ def test_what_is_latched_is_written_once_and_first(recorded: Recorded) -> None:
         counts = {summary.channels[k].topic: n for k, n in summary.statistics.channel_message_counts.items()}
         order = [channel.topic for _, channel, _ in reader.iter_messages(log_time_order=False)][:8]
     assert {topic: counts[topic] for topic in latched} == dict.fromkeys(latched, 1)
-    assert set(order[1:4]) == latched
+    assert set(order[1:5]) == latched
     assert order[0] == "/clock"
     for topic, channel in channels.items():
         assert ("durability: 1" in channel.metadata["offered_qos_profiles"]) == (topic in latched)

@@ -12,7 +12,7 @@ from .metadata import as_json, versions
 from .recorded_run import episode_path, open_run, record, run
 from .recorded_simulation import EpisodeRerun, RecordedSimulation, open_rerun
 from .robot_messages import LinkFrames
-from .step_messages import StepMessage, StepMessages
+from .step_messages import StepMessage, StepMessages, is_latched
 from .step_records import RecordedStep
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "episode_path",
     "export",
     "folder_of",
+    "is_latched",
     "iterate_steps",
     "keyframe_ticks",
     "named_files",

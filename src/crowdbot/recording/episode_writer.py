@@ -22,7 +22,7 @@ from .attachments import SkippedAttachmentWarning, collect_attachments, skip_mes
 from .keyframes import MEDIA, KeyframeTrack
 from .mcap_writer import McapWriter
 from .metadata import ADDED_ROBOTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
-from .step_messages import StepMessages
+from .step_messages import StepMessages, is_latched
 
 FOREVER = "{sec: 2147483647, nsec: 4294967295}"
 LATCHED = (
@@ -31,8 +31,6 @@ LATCHED = (
     f"  liveliness: 1\n  liveliness_lease_duration: {FOREVER}\n  avoid_ros_namespace_conventions: false\n"
 )
 """Quality of service of what is written once, for late subscribers in ROS (read by rosbag2)."""
-LATCHED_TOPICS = ("/tf_static", "/robot_description")
-"""Topics that are written once, for late subscribers too."""
 APART = 500_000_000
 """Simulated time between two writes [ns]; the content of the file does not depend on wall time."""
 
@@ -41,12 +39,12 @@ class Recorder:
     """Writes the step records of a run to a file that is readable at any time, also after the process is killed.
 
     Topics: ``/clock``, ``/tf`` (``map``, odometry frame, robot and moving links), ``/tf_static`` (fixed links and
-    sensors, latched), ``/people``, ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``,
-    ``/<robot>/ground_truth/odom``, ``/<robot>/cmd_vel``, ``/<robot>/joint_states``, ``/<robot>/robot_description``
-    (latched) and ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for
-    contacts of a robot with people or walls, ``/crowdbot/orders`` for orders from outside, and ``/crowdbot/reactions``
-    if people can react to robots; in the physics world ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time
-    stamps are simulated time.
+    sensors, latched), ``/map`` (latched), ``/people``, ``/crowd/markers``, ``/crowdbot/digest``, for each robot
+    ``/<robot>/odom``, ``/<robot>/ground_truth/odom``, ``/<robot>/cmd_vel``, ``/<robot>/joint_states``,
+    ``/<robot>/robot_description`` (latched) and ``/<robot>/<sensor>`` (message types of sensors:
+    :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for contacts of a robot with people or walls, ``/crowdbot/orders``
+    for orders from outside, and ``/crowdbot/reactions`` if people can react to robots; in the physics world
+    ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are simulated time.
 
     The file is created, or replaced, at the first recorded step and grows every half second of simulated time. Use it
     as a context manager: without :meth:`complete`, the file is left incomplete; before the first step, no file and no
@@ -192,7 +190,7 @@ class Recorder:
         assert self.tape is not None
         if topic not in self.channels:
             schema = self.tape.schema(kind, self.messages.definition(kind))
-            quality = LATCHED if topic.endswith(LATCHED_TOPICS) else ""
+            quality = LATCHED if is_latched(topic) else ""
             self.channels[topic] = self.tape.channel(topic, schema, quality)
         try:
             self.tape.message(self.channels[topic], nanoseconds, data)

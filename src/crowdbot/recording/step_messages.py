@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import FreeClock
+import numpy as np
+
+from crowdbot.core import FreeClock, Scene
 from crowdbot.messages import (
     FALL_POSES,
     MeasuredReading,
@@ -20,11 +23,87 @@ from crowdbot.messages import (
 )
 from crowdbot.messages import MARKERS as MARKER_KIND
 from crowdbot.simulation import WALL, Simulation, StepRecord, write_order
-from crowdbot.trials import Trial
+from crowdbot.trials import Stage, Trial
+from crowdbot.typing import Bools, Floats
 from crowdbot.world import people_by_reaction
 
 from .metadata import CONTACTS, ORDERS, REACTION_TOPIC, as_json
-from .robot_messages import RobotMessages
+from .robot_messages import STATIC, RobotMessages
+
+MAP_TOPIC = "/map"
+CELL, MOST_CELLS = 0.05, 1_000_000
+"""Size of a cell of the map [m], and the largest number of cells; a larger stage gets larger cells."""
+BLOCKS = (64, 16, 4, 1)
+"""Cells on a side of the blocks of the map; a block far away from solids is free as a whole."""
+MARGIN = 1.0
+"""Free space [m] around walls, people and robots."""
+OCCUPIED = 100
+
+
+def is_latched(topic: str) -> bool:
+    """Whether a topic has its messages once, for late subscribers too.
+
+    >>> is_latched("/map"), is_latched("/robot/robot_description"), is_latched("/tf")
+    (True, True, False)
+    """
+    return topic in (MAP_TOPIC, STATIC) or topic.endswith("/robot_description")
+
+
+def map_message(make: Messages, stage: Stage, scene: Scene) -> Any:
+    """Return ``nav_msgs/OccupancyGrid``: 100 in and on solids and outside the walkable area, 0 elsewhere.
+
+    A cell is occupied if a solid is nearer to its centre than half of its diagonal.
+
+    Args:
+        make: creates the message.
+        stage: the stage, with walls, obstacles and props.
+        scene: people and robots at the start, which lie on the map.
+
+    >>> from crowdbot.trials import load_trial
+    >>> simulation = Simulation(load_trial("bottleneck"), 0)
+    >>> grid = map_message(Messages(), simulation.trial.stage, simulation.world.scene)
+    >>> grid.info.resolution, int(grid.data.max()), grid.data.size == grid.info.width * grid.info.height
+    (0.05, 100, True)
+    """
+    low, high = _bounds(stage, scene)
+    cell = CELL
+    while math.prod(np.ceil((high - low) / cell)) > MOST_CELLS:
+        cell *= 2.0
+    width, height = (int(count) for count in np.ceil((high - low) / cell))
+    info = make.make(
+        "nav_msgs/msg/MapMetaData",
+        map_load_time=make.stamp(0),
+        resolution=cell,
+        width=width,
+        height=height,
+        origin=make.pose(float(low[0]), float(low[1]), 0.0),
+    )
+    data = np.where(_occupied(stage, low, cell, (height, width)), OCCUPIED, 0).astype(np.int8).ravel()
+    return make.make("nav_msgs/msg/OccupancyGrid", header=make.header(0), info=info, data=data)
+
+
+def _occupied(stage: Stage, low: Floats, cell: float, shape: tuple[int, int]) -> Bools:
+    """Return the occupied cells ``[height, width]``; cells in blocks that are far away from solids are not measured."""
+    chosen = np.ones([-(-count // BLOCKS[0]) for count in shape], dtype=np.bool_)
+    for size, finer in zip(BLOCKS, (*BLOCKS[1:], 1), strict=True):
+        rows, columns = np.nonzero(chosen)
+        centres = low + cell * size * (np.stack([columns, rows], axis=1) + 0.5)
+        reach = cell * math.sqrt(0.5) * (size + (size > 1))  # of the cells in a block, and of their own
+        chosen[rows, columns] = stage.clearance(centres) <= reach
+        times = size // finer
+        chosen = np.repeat(np.repeat(chosen, times, axis=0), times, axis=1)
+        chosen = chosen[: -(-shape[0] // finer), : -(-shape[1] // finer)]
+    return chosen
+
+
+def _bounds(stage: Stage, scene: Scene) -> tuple[Floats, Floats]:
+    """Return the corners [m] of the map, on whole cells."""
+    places = [np.asarray(ring, dtype=np.float64) for ring in stage.rings]
+    there = scene.active[0]
+    places += [scene.position[0, there], scene.goal[0, there], np.zeros((1, 2))]
+    points = np.concatenate([rows[np.isfinite(rows).all(axis=1)] for rows in places])
+    low = np.floor((points.min(axis=0) - MARGIN) / CELL) * CELL
+    return low, points.max(axis=0) + MARGIN
 
 
 def _everything(topic: str) -> bool:
@@ -76,7 +155,7 @@ class StepMessages:
     >>> simulation.begin()
     >>> steps = StepMessages(trial, {}, simulation)
     >>> [one.topic for one in steps.messages(simulation.record())][:4]
-    ['/clock', '/robot/robot_description', '/tf_static', '/tf']
+    ['/clock', '/map', '/robot/robot_description', '/tf_static']
     """
 
     def __init__(
@@ -90,6 +169,8 @@ class StepMessages:
         self.make = Messages()
         self.robots = RobotMessages(self.make, simulation)
         self.names, self._labelled = dict(names), labelled
+        self._stage: Stage | None = trial.stage
+        """The stage until the map is sent."""
         clock = FreeClock(trial.step)
         self._markers = clock.schedule(trial.recording.markers)
         self._next_markers = self._markers.index(self._markers.next_due(begin))
@@ -124,6 +205,9 @@ class StepMessages:
     def _of_step(self, frame: StepRecord, wants: Callable[[str], bool]) -> Iterator[tuple[str, Any]]:
         now, make = frame.nanoseconds, self.make
         yield "/clock", make.clock(now)
+        if self._stage is not None and wants(MAP_TOPIC):
+            yield MAP_TOPIC, map_message(make, self._stage, frame.scene)
+            self._stage = None
         yield from self.robots.latched(frame)
         for message in self.robots.transforms(frame):
             yield "/tf", message

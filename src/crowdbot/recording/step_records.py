@@ -42,7 +42,7 @@ from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ORDERS, REACTION_TOPIC, he
 
 T = TypeVar("T")
 R = TypeVar("R", bound=Reading)
-UNUSED = ("/clock", "/crowd/markers")
+UNUSED = ("/clock", "/map", "/crowd/markers")
 """Topics that are for other tools only."""
 SCAN = "sensor_msgs/msg/LaserScan"
 
