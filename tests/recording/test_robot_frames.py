@@ -334,3 +334,25 @@ def test_a_pose_is_expressed_in_another_frame() -> None:
         found = relative(frame, frame.offset(*inside.position[0].tolist(), float(inside.heading[0])))
         assert found.position == pytest.approx(inside.position)
         assert found.heading == pytest.approx(inside.heading)
+
+
+def test_odometry_has_the_covariance_of_its_errors_and_a_branch_continues_it(tmp_path: Path) -> None:
+    trial = parse_trial("""<trial name="slip" duration="2"><crowd type="orca"/><robot name="bot" x="0" y="0">
+      <drive type="differential-drive"/><goal x="9" y="3"/><navigator type="straight"/>
+      <sensor name="wheels" type="wheel-odometry" rate="20" slip="0.05" noise="gaussian(0.1)"/></robot></trial>""")
+    recorded = record(trial, tmp_path)
+    ends = {topic: rows[-1][1] for topic, rows in recorded.messages.items()}
+    sent, whole = ends["/bot/odom"], ends["/bot/wheels"]
+    covariance = whole.pose.covariance.reshape(6, 6)
+    assert covariance[0, 0] > 1e-4
+    assert covariance[5, 5] > 1e-3
+    assert covariance[1, 5] > 1e-3  # it has turned to the left before it drove on
+    assert [covariance[k, k] for k in (2, 3, 4)] == [1e-9] * 3
+    assert whole.twist.covariance.reshape(6, 6)[0, 0] > 0.01
+    assert sent.pose.covariance.tolist() == whole.pose.covariance.tolist()
+    assert sent.twist.covariance.tolist() == whole.twist.covariance.tolist()
+    truth = ends["/bot/ground_truth/odom"]
+    assert truth.pose.covariance.tolist() == truth.twist.covariance.tolist() == (1e-9 * np.eye(6)).ravel().tolist()
+    branch(recorded.path, 1.0, out=tmp_path / "rest")
+    rest = messages_of(tmp_path / "rest" / "episode.mcap")
+    assert rest["/bot/odom"][-1][1].pose.covariance.tolist() == sent.pose.covariance.tolist()

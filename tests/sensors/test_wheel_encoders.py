@@ -9,10 +9,12 @@ import pytest
 
 from crowdbot.core import InputError, Pose, Scene, stream
 from crowdbot.sensors import (
+    Gaussian,
     SensorView,
     WheelGeometry,
     WheelOdometry,
     WheelRotation,
+    along_arc,
     arc_between,
     put_state_rows,
     take_state_rows,
@@ -97,6 +99,31 @@ def test_random_slip_grows_with_the_root_of_the_distance():
     off = last.travelled[:, :2] - 1.0
     assert off.std() == pytest.approx(0.02, rel=0.05)
     assert abs(off.mean()) < 4 * 0.02 / math.sqrt(2 * count)
+
+
+@pytest.mark.parametrize("encoders", [False, True])
+def test_the_covariance_is_that_of_many_runs(encoders):
+    count = 4000
+    odometry = WheelOdometry(slip=0.03, noise=Gaussian(0.1))
+    pose, angle, state, rng = HERE, np.zeros(2), odometry.begin(), stream(1)
+    for k in range(41):  # 2 m along an S
+        here = Pose(np.repeat(pose.position, count, axis=0), np.repeat(pose.heading, count))
+        wheels = WheelRotation(TWO, np.tile(angle, (count, 1))) if encoders else None
+        scene = Scene.of(np.zeros((count, 0, 2)), time=0.1 * k)
+        last, state = odometry.measure(SensorView(scene, here, wheels=wheels), state, rng)
+        turn = 0.05 if k < 20 else -0.03
+        pose = along_arc(pose, np.array([0.05]), np.zeros(1), np.array([turn]))
+        angle = angle + (0.05 + np.array([-0.2, 0.2]) * turn) / 0.1
+    ends = np.column_stack([last.estimate.position, last.estimate.heading])
+    largest = np.sqrt(np.outer(*[np.diag(np.cov(ends.T))] * 2))
+    np.testing.assert_array_less(np.abs(last.covariance.mean(axis=0) - np.cov(ends.T)) / largest, 0.1)
+    np.testing.assert_allclose(last.twist_covariance.mean(axis=0), np.cov(last.twist.T), atol=0.004)
+
+
+def test_without_random_errors_the_covariance_is_zero():
+    last = drive(WheelOdometry(left_scale=1.02), TWO, [[0.0, 0.0], [1.0, 1.3]])
+    assert not last.covariance.any()
+    assert not last.twist_covariance.any()
 
 
 def test_four_wheels_are_averaged_and_a_wide_track_is_a_parameter():

@@ -103,6 +103,18 @@ OWN = {
 """Type definitions that are not part of ROS 2 Humble; they are stored in the file."""
 
 
+EXACT = 1e-9
+"""Variance of what is known exactly [m2], [rad2], [m2/s2] or [rad2/s2]."""
+
+
+def _spatial_covariance(planar: NDArray[np.float64] | None, places: tuple[int, int, int]) -> NDArray[np.float64]:
+    """Return the covariance ``[36]`` of x, y, z, roll, pitch, yaw from that of three of them ``[3, 3]``."""
+    whole = np.eye(6) * EXACT
+    if planar is not None:
+        whole[np.ix_(places, places)] += planar
+    return whole.ravel()
+
+
 @functools.cache
 def _store() -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
@@ -175,10 +187,17 @@ class Messages:
         twist: Sequence[float],
         frame: str = MAP,
         child: str = "",
+        covariances: Sequence[NDArray[np.float64] | None] = (None, None),
     ) -> Any:
         """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the child frame.
 
-        The child frame is that of the robot (default: its ``base_link``).
+        The child frame is that of the robot (default: its ``base_link``). ``covariances`` are those of x, y, heading
+        and of forward, turn, left, ``[3, 3]``; None: exact. :data:`EXACT` is added to all variances, those of z, roll
+        and pitch, too, since programs take a covariance of zeros for an unknown one.
+
+        >>> odometry = Messages().odometry(0, "robot", 1.0, 0.0, 0.0, [0.5, 0.0, 0.0], covariances=(np.eye(3), None))
+        >>> odometry.pose.covariance.reshape(6, 6).diagonal().round(6).tolist()
+        [1.0, 1.0, 0.0, 0.0, 0.0, 1.0]
         """
         forward, turn, left = map(float, twist)
         return self.make(
@@ -186,12 +205,14 @@ class Messages:
             header=self.header(nanoseconds, frame),
             child_frame_id=child or f"{name}/base_link",
             pose=self.make(
-                "geometry_msgs/msg/PoseWithCovariance", pose=self.pose(x, y, heading), covariance=np.zeros(36)
+                "geometry_msgs/msg/PoseWithCovariance",
+                pose=self.pose(x, y, heading),
+                covariance=_spatial_covariance(covariances[0], (0, 1, 5)),
             ),
             twist=self.make(
                 "geometry_msgs/msg/TwistWithCovariance",
                 twist=self.twist(forward, turn, left),
-                covariance=np.zeros(36),
+                covariance=_spatial_covariance(covariances[1], (0, 5, 1)),
             ),
         )
 

@@ -76,6 +76,7 @@ def encode_reading(make: Messages, told: MeasuredReading) -> list[tuple[str, Any
     codec = codec_of(type(told.reading), told.topic)
     reading = told.reading
     rest = {"pose": reading.pose} | {FIELD_NAMES.get(name, name): getattr(reading, name) for name in codec.rest}
+    rest = {name: value for name, value in rest.items() if value is not None}
     fields = [
         make.make("crowdbot_msgs/msg/Array", name=name, dtype=kind, shape=shape, data=data)
         for name, kind, shape, data in pack_arrays(rest, codec.short)
@@ -218,8 +219,8 @@ def _read_inertial(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[s
 def _write_odometry(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading = told.reading
     (x, y), heading = reading.estimate.position[0].tolist(), float(reading.estimate.heading[0])
-    odometry = make.odometry(told.nanoseconds, told.robot, x, y, heading, reading.twist[0], frame=f"{told.robot}/odom")
-    return [("", odometry)]
+    place, twist = (told.nanoseconds, told.robot, x, y, heading), reading.twist[0]
+    return [("", make.odometry(*place, twist, f"{told.robot}/odom", covariances=reading.covariances(0)))]
 
 
 def _read_odometry(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
@@ -277,10 +278,10 @@ CODECS: dict[type[Reading], Codec] = {
     ),
     Odometry: Codec(
         {"": "nav_msgs/msg/Odometry"},
-        "in the frame `<robot>/odom`",
+        "in the frame `<robot>/odom`, with the covariance of slip and noise",
         _write_odometry,
         _read_odometry,
-        rest=("estimate", "travelled", "ticks"),
+        rest=("estimate", "travelled", "ticks", "covariance", "twist_covariance"),
     ),
     RgbImage: picture_codec,
     BumperReading: touch_codec,

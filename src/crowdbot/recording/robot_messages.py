@@ -136,7 +136,7 @@ class RobotMessages:
         self._frames: dict[str, LinkFrames] = {}
         self._static: dict[str, Row] = {}
         self._corrections: dict[str, Pose] = {}
-        self._twists: dict[str, Any] = {}
+        self._measured: dict[str, Odometry] = {}
         self._sensors: dict[str, str] = {}
         self._begin = True
 
@@ -180,8 +180,11 @@ class RobotMessages:
             yield f"/{name}{GROUND_TRUTH}", make.odometry(now, name, x, y, heading, frame.twists[k], MAP, base)
             if self.has_topic(robot, "odom"):
                 estimate = _numbers(relative(self._correction(robot), truth))
-                twist = self._twists.get(name, frame.twists[k])
-                yield f"/{name}/odom", make.odometry(now, name, *estimate, twist, f"{name}/odom", base)
+                measured = self._measured.get(name)
+                twist = frame.twists[k] if measured is None else measured.twist[0]
+                covariances = (None, None) if measured is None else measured.covariances(0)
+                odometry = make.odometry(now, name, *estimate, twist, f"{name}/odom", base, covariances)
+                yield f"/{name}/odom", odometry
             yield f"/{name}/cmd_vel", make.twist(*frame.commands[k])
             if robot.body.model.movable and self.has_topic(robot, "joint_states"):
                 yield f"/{name}/joint_states", make.joint_states(now, self.states(frame, k))
@@ -217,7 +220,7 @@ class RobotMessages:
         cos, sin = np.cos(turn), np.sin(turn)
         x, y = estimate.position.T
         place = true.position - np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
-        self._corrections[name], self._twists[name] = Pose(place, turn), reading.twist[0]
+        self._corrections[name], self._measured[name] = Pose(place, turn), reading
 
     def _correction(self, robot: RobotSpec) -> Pose:
         return self._corrections.get(robot.name, HERE)

@@ -18,7 +18,7 @@ from .sensor import Reading, Sensor, SensorSchedule, join_readings, planar_pose,
 from .skin_scans import triangles_one_by_one
 from .state_rows import StateGroups, measure_rows, put_state_rows, take_state_rows
 from .view import SensorView, WheelGeometry, WheelRotation
-from .wheel_odometry import Odometry, OdometryState, WheelOdometry, arc_between
+from .wheel_odometry import Odometry, OdometryState, WheelOdometry, along_arc, arc_between
 
 __all__ = [
     "FLOOR",
@@ -68,6 +68,7 @@ __all__ = [
     "WheelGeometry",
     "WheelOdometry",
     "WheelRotation",
+    "along_arc",
     "apply_noise",
     "arc_between",
     "cast_plane",

@@ -48,6 +48,7 @@ class Reading:
     Class attributes:
         shared_fields: names of the fields that belong to all environments, such as the angles of beams. Numbers and
             texts always do.
+        derived_fields: names of the fields that follow from the others, or None; digests of episodes leave them out.
 
     >>> reading = Reading(0.5, Pose.of([[0.0, 0.0], [3.0, 1.0]], 0.0))
     >>> reading.environment(1).pose.position.tolist()
@@ -57,6 +58,7 @@ class Reading:
     time: float | NDArray[np.float64]
     pose: Pose | SpatialPose
     shared_fields: ClassVar[tuple[str, ...]] = ()
+    derived_fields: ClassVar[tuple[str, ...]] = ()
 
     def select(self, index: ArrayLike) -> Self:
         """Return the reading of the environments ``index``, in this order.

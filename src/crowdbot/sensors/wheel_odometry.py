@@ -13,7 +13,7 @@ from crowdbot.core import Pose, SpatialPose, check_number, storable
 from crowdbot.typing import Floats
 
 from .imu import elapsed_time
-from .noise import Randomness, apply_noise, normals
+from .noise import Gaussian, Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose
 from .view import SensorView, WheelGeometry, WheelRotation
 
@@ -41,6 +41,32 @@ def along_arc(pose: Pose, forward: Floats, left: Floats, turn: Floats) -> Pose:
     return Pose(pose.position + step, pose.heading + turn)
 
 
+def covariance_along_arc(covariance: Floats, pose: Pose, motion: Floats, spread: Floats) -> Floats:
+    """Return the covariance ``[E, 3, 3]`` of x, y, heading at the end of arcs (first order).
+
+    Args:
+        covariance: ``[E, 3, 3]`` covariance at the begin.
+        pose: pose at the begin.
+        motion: ``[E, 3]`` forward [m], turn [rad] and left [m] of the arcs.
+        spread: ``[E, 3, 3]`` covariance of the motion.
+
+    >>> spread = np.diag([0.01, 0.0, 0.04])[None]
+    >>> here, ahead = Pose.of((0.0, 0.0), 0.0), np.array([[1.0, 0.0, 0.0]])
+    >>> covariance_along_arc(np.zeros((1, 3, 3)), here, ahead, spread)[0].diagonal().tolist()
+    [0.01, 0.04, 0.0]
+    """
+    forward, turn, left = motion.T
+    middle = pose.heading + 0.5 * turn
+    chord = np.sinc(turn / (2.0 * math.pi))
+    cos, sin = chord * np.cos(middle), chord * np.sin(middle)
+    dx, dy = cos * forward - sin * left, sin * forward + cos * left
+    none, one = np.zeros_like(dx), np.ones_like(dx)
+    by_pose = np.array([[one, none, -dy], [none, one, dx], [none, none, one]]).transpose(2, 0, 1)
+    by_motion = np.array([[cos, -0.5 * dy, -sin], [sin, 0.5 * dx, cos], [none, one, none]]).transpose(2, 0, 1)
+    both = by_pose @ covariance @ by_pose.transpose(0, 2, 1), by_motion @ spread @ by_motion.transpose(0, 2, 1)
+    return np.asarray(both[0] + both[1])
+
+
 TRACK, RADIUS = 0.4, 0.1
 """Track and radius of wheels [m] of robots whose wheels are not known."""
 SAME = 1e-9
@@ -57,12 +83,22 @@ class Odometry(Reading):
         twist: ``[E, 3]`` forward [m/s], turn [rad/s], left [m/s], mean since the previous reading.
         travelled: ``[E, 3]`` distance of the left and right wheels and sideways, with errors [m].
         ticks: ``[E, 3]`` counts of the encoders, 0 without encoders; the mean of several wheels on a side.
+        covariance: ``[E, 3, 3]`` covariance of x, y [m] and heading [rad] of the estimate since the start, from slip.
+        twist_covariance: ``[E, 3, 3]`` covariance of the twist, from slip and Gaussian noise.
     """
 
     estimate: Pose
     twist: Floats
     travelled: Floats
     ticks: NDArray[np.int64]
+    covariance: Floats | None = None
+    twist_covariance: Floats | None = None
+    derived_fields: ClassVar[tuple[str, ...]] = ("covariance", "twist_covariance")
+
+    def covariances(self, environment: int) -> tuple[Floats | None, Floats | None]:
+        """Covariances ``[3, 3]`` of the estimate and of the twist in an environment; None: not known."""
+        pose, twist = self.covariance, self.twist_covariance
+        return None if pose is None else pose[environment], None if twist is None else twist[environment]
 
 
 @storable
@@ -78,6 +114,7 @@ class OdometryState:
         ticks: ``[E, 3]`` counts of the encoders.
         angle: ``[E, W]`` angles of the encoders [rad]; None where wheels are not simulated.
         distance: ``[E, W]`` distance of each wheel, with errors [m].
+        covariance: ``[E, 3, 3]`` covariance of x, y, heading of the estimate.
     """
 
     time: float | Floats
@@ -87,6 +124,7 @@ class OdometryState:
     ticks: NDArray[np.int64]
     angle: Floats | None = None
     distance: Floats | None = None
+    covariance: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -170,25 +208,36 @@ class WheelOdometry(Sensor):
         if state is None:
             still = np.zeros((len(here.heading), 3))
             shown = finite_or_nan(apply_noise(still, self.noises, rng))
-            reading = Odometry(view.time, view.pose, here, shown, still, still.astype(np.int64))
+            nothing = np.zeros((len(still), 3, 3))
+            counts, noise = still.astype(np.int64), nothing + self._noise
+            reading = Odometry(view.time, view.pose, here, shown, still, counts, nothing, noise)
             return reading, _state(reading, *_first_encoders(view.wheels))
         dt = elapsed_time(self, view, state)
         wheels = view.wheels
         if wheels is None or wheels.angle is None:
-            motion, travelled, ticks = self._rolled(view, state, here, rng)
+            motion, spread, travelled, ticks = self._rolled(view, state, here, rng)
             encoders: tuple[Floats | None, Floats | None] = (None, None)
         else:
-            motion, travelled, ticks, encoders = self._encoded(wheels, state, rng)
+            motion, spread, travelled, ticks, encoders = self._encoded(wheels, state, rng)
         moved, turning, aside = motion.T
         shown = finite_or_nan(apply_noise(motion / dt, self.noises, rng))
         estimate = along_arc(state.estimate, moved, aside, turning)
-        reading = Odometry(view.time, view.pose, estimate, shown, travelled, ticks)
+        covariance = np.zeros_like(spread) if state.covariance is None else state.covariance
+        if self.slip > 0.0:
+            covariance = covariance_along_arc(covariance, state.estimate, motion, spread)
+        twist_covariance = spread / np.square(np.reshape(dt, (-1, 1, 1))) + self._noise
+        reading = Odometry(view.time, view.pose, estimate, shown, travelled, ticks, covariance, twist_covariance)
         return reading, _state(reading, *encoders)
+
+    @property
+    def _noise(self) -> Floats:
+        """Covariance ``[3, 3]`` of the Gaussian noise of the twist."""
+        return np.eye(3) * sum(noise.sd**2 for noise in self.noises if isinstance(noise, Gaussian))
 
     def _rolled(
         self, view: SensorView, state: OdometryState, here: Pose, rng: Randomness | None
-    ) -> tuple[Floats, Floats, NDArray[np.int64]]:
-        """Return motion, distances and counts ``[E, 3]`` of a left and a right wheel that roll with the base."""
+    ) -> tuple[Floats, Floats, Floats, NDArray[np.int64]]:
+        """Motion ``[E, 3]``, its covariance, and distances and counts of two wheels that roll with the base."""
         geometry = None if view.wheels is None else view.wheels.geometry
         true_track, true_radius = (0.0, 0.0) if geometry is None else (geometry.track, float(np.mean(geometry.radius)))
         track, true_track = _lengths(self.track, TRACK, true_track, self.track_scale)
@@ -206,12 +255,13 @@ class WheelOdometry(Sensor):
             ticks = np.floor(travelled / tick + 0.5).astype(np.int64)
             way = (ticks - state.ticks) * tick
         motion = np.stack([0.5 * (way[:, 0] + way[:, 1]), (way[:, 1] - way[:, 0]) / track, way[:, 2]], axis=1)
-        return motion, travelled, ticks
+        solution = np.array([[0.5, 0.5, 0.0], [-1.0 / track, 1.0 / track, 0.0], [0.0, 0.0, 1.0]])
+        return motion, self._spread(solution, way), travelled, ticks
 
     def _encoded(
         self, wheels: WheelRotation, state: OdometryState, rng: Randomness | None
-    ) -> tuple[Floats, Floats, NDArray[np.int64], tuple[Floats, Floats]]:
-        """Return motion, distances and counts ``[E, 3]`` from the angles of wheels, and angles and distances."""
+    ) -> tuple[Floats, Floats, Floats, NDArray[np.int64], tuple[Floats, Floats]]:
+        """Motion ``[E, 3]``, its covariance, distances and counts from the angles of wheels; angles and distances."""
         geometry, angle = wheels.geometry, np.asarray(wheels.angle)
         before, distance = angle, np.zeros_like(angle)
         if state.angle is not None and state.distance is not None and state.angle.shape == angle.shape:
@@ -226,14 +276,19 @@ class WheelOdometry(Sensor):
             tick = 2.0 * math.pi * radius / self.ticks_per_turn
             counts = np.floor(after / tick + 0.5).astype(np.int64)
             way = (counts - np.floor(distance / tick + 0.5)) * tick
-        motion = self._solve(wheels, way)
+        motion, solution = self._solve(wheels, way)
         travelled = state.travelled + np.stack([*_mean_of_sides(way, geometry), motion[:, 2]], axis=1)
         sides = [np.rint(part).astype(np.int64) for part in _mean_of_sides(counts, geometry)]
         ticks = np.stack([*sides, np.zeros(len(way), dtype=np.int64)], axis=1)
-        return motion, travelled, ticks, (angle, after)
+        return motion, self._spread(solution, way), travelled, ticks, (angle, after)
 
-    def _solve(self, wheels: WheelRotation, way: Floats) -> Floats:
-        """Return forward, turn and left ``[E, 3]`` that fit the distances ``[E, W]`` of the wheels best."""
+    def _spread(self, solution: Floats, way: Floats) -> Floats:
+        """Covariance ``[E, 3, 3]`` of a motion that is ``solution`` times the distances ``[E, W]`` of wheels."""
+        scaled = solution * (self.slip**2 * np.abs(way))[:, None, :]
+        return np.asarray(scaled @ np.swapaxes(solution, -1, -2))
+
+    def _solve(self, wheels: WheelRotation, way: Floats) -> tuple[Floats, Floats]:
+        """Forward, turn and left ``[E, 3]`` that fit the distances ``[E, W]`` best, and the matrix ``[E, 3, W]``."""
         geometry = wheels.geometry
         rows = wheels.rolling * geometry.radius[None, :, None]
         rows = np.broadcast_to(rows, (len(way), *rows.shape[1:])).copy()
@@ -242,9 +297,11 @@ class WheelOdometry(Sensor):
         fixed = np.broadcast_to(wheels.constraints(), (len(way), *wheels.constraints().shape[1:]))
         whole = np.concatenate([rows, fixed], axis=1)
         values = np.concatenate([way, np.zeros(fixed.shape[:2])], axis=1)
-        motion = (np.linalg.pinv(whole) @ values[:, :, None])[:, :, 0]
-        motion[:, 2] *= self.holonomic or not geometry.sideways
-        return np.asarray(motion)
+        inverse = np.linalg.pinv(whole)
+        motion = (inverse @ values[:, :, None])[:, :, 0]
+        aside = self.holonomic or not geometry.sideways
+        motion[:, 2] *= aside
+        return np.asarray(motion), inverse[:, :, : way.shape[1]] * np.array([1.0, 1.0, aside])[:, None]
 
     def _radii(self, geometry: WheelGeometry) -> Floats:
         """Return the radius ``[W]`` that the robot believes of each wheel [m]."""
@@ -285,5 +342,12 @@ def _first_encoders(wheels: WheelRotation | None) -> tuple[Floats | None, Floats
 
 def _state(reading: Odometry, angle: Floats | None, distance: Floats | None) -> OdometryState:
     return OdometryState(
-        reading.time, reading.pose, reading.estimate, reading.travelled, reading.ticks, angle, distance
+        reading.time,
+        reading.pose,
+        reading.estimate,
+        reading.travelled,
+        reading.ticks,
+        angle,
+        distance,
+        reading.covariance,
     )

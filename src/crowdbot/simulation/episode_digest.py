@@ -138,8 +138,8 @@ class EpisodeDigest:
         """Add a record: all arrays of its readings, then of its scene if due, then forces."""
         for robot, mount, reading in frame.readings:
             self._sum.update(_reading_head(frame.nanoseconds, robot.name, mount.name))
-            for field in dataclasses.fields(reading):
-                self._sum.update(_bytes(getattr(reading, field.name)))
+            for name in _digested(type(reading)):
+                self._sum.update(_bytes(getattr(reading, name)))
         if frame.due:
             self._sum.update(_frame_head(frame.nanoseconds))
             who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
@@ -243,11 +243,11 @@ def _rows_of_reading(told: SensorReadings) -> list[bytes | Bytes] | None:
     if isinstance(reading.time, np.ndarray) and reading.time.dtype != np.float64:
         return None
     rows_of_reading: list[bytes | Bytes] = []
-    for field in dataclasses.fields(reading):
-        value = getattr(reading, field.name)
-        if field.name == "hit":
+    for name in _digested(type(reading)):
+        value = getattr(reading, name)
+        if name == "hit":
             value = _named_hits(value, told.ids)
-        part = _bytes(value) if field.name in type(reading).shared_fields else _field_rows(value, count)
+        part = _bytes(value) if name in type(reading).shared_fields else _field_rows(value, count)
         if part is None:
             return None
         rows_of_reading.append(part)
@@ -283,6 +283,11 @@ def _byte_rows(array: NDArray[Any]) -> Bytes:
     """Return the bytes of each row ``[N, B]``."""
     whole = np.ascontiguousarray(array)
     return whole.reshape(len(whole), math.prod(whole.shape[1:])).view(np.uint8)
+
+
+def _digested(kind: type[Reading]) -> tuple[str, ...]:
+    """Return the fields of a class of readings, but those that follow from others."""
+    return tuple(field.name for field in dataclasses.fields(kind) if field.name not in kind.derived_fields)
 
 
 def _reading_head(nanoseconds: int, robot: str, mount: str) -> bytes:
