@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import struct
+import sys
 
 from rosbags.typesys import Stores, get_typestore
 from scan_driver import ScanDriver, add_options, goal_of, heading_of
@@ -92,7 +93,11 @@ def main():
     options = parser.parse_args()
     driver = ScanDriver(goal_of(options))
     address = f"ws://{options.host}:{options.port}"
-    with connect(address, subprotocols=["foxglove.sdk.v1"], max_size=None, close_timeout=1.0) as socket:
+    try:
+        socket = connect(address, subprotocols=["foxglove.sdk.v1"], max_size=None, close_timeout=1.0)
+    except OSError as error:
+        sys.exit(f"no simulation at {address} ({error}); start it first, with --bridge foxglove")
+    with socket:
         node = NavigationNode(socket, options.robot, driver)
         try:
             while not driver.done:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 import time
 from collections import deque
 
@@ -92,7 +93,10 @@ def main():
     options = parser.parse_args()
     goal, start = ([float(one) for one in text.split(",")] for text in (options.goal, options.start))
     session = qi.Session()
-    session.connect(options.url)
+    try:
+        session.connect(options.url)
+    except RuntimeError as error:
+        sys.exit(f"no robot at {options.url}: {error}")
     driver = ScanDriver(goal)
     driver.planner.max_speed, driver.planner.max_turn = 0.35, 0.7
     node = NavigationNode(session, start, driver)

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 import threading
 
 import roslibpy
@@ -68,10 +69,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--host", default="127.0.0.1")
     parser.add_argument("--port", type=int, default=9090)
+    parser.add_argument("--wait", type=float, default=60.0, help="time to wait for the server [s]")
     add_options(parser)
     options = parser.parse_args()
     ros = roslibpy.Ros(options.host, options.port)
-    ros.run(timeout=60)
+    try:
+        ros.run(timeout=options.wait)
+    except roslibpy.core.RosTimeoutError:
+        ros.terminate()
+        sys.exit(
+            f"no server at {options.host}:{options.port} within {options.wait:g} s; start one, with --bridge rosbridge"
+        )
     gone = threading.Event()
     ros.on("close", lambda *_: gone.set())
     driver = ScanDriver(goal_of(options))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import subprocess
 import sys
@@ -152,6 +153,21 @@ def test_a_wrong_option_is_refused(
     with pytest.raises(InputError) as caught:
         parse_captures(texts, TRIAL)
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(("seconds", "late"), [(0.02, False), (0.06, True)])
+def test_a_run_that_is_late_says_so(
+    seconds: float, late: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = itertools.count(0.0, seconds)  # real time [s] that a step takes
+    clock = functools.partial(PacedClock, monotonic=lambda: next(now), sleep=lambda seconds: None)
+    monkeypatch.setattr("crowdbot.core.PacedClock", clock)
+    monkeypatch.chdir(tmp_path)
+    Path("walk.bvh").write_bytes(WALK)
+    Path("led.xml").write_text(TEXT.format(2.0), encoding="utf-8")
+    assert main(["run", "led.xml", "--mocap", "walk.bvh=guide", "--pace", "1"]) == 0
+    text = "the run could not keep up with --pace 1: 0.3 s late"
+    assert (text in capsys.readouterr().err) == late
 
 
 @pytest.mark.live

@@ -177,6 +177,23 @@ def test_a_node_of_ros1_drives_a_robot_around_a_pillar_to_its_goal(tmp_path):
     check(navigate("ros1", "navigate_ros1.py", tmp_path))
 
 
+@pytest.mark.live
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["navigate_foxglove.py", "--port", "9"], "no simulation at ws://127.0.0.1:9 "),
+        (["navigate_rosbridge.py", "--port", "9", "--wait", "1"], "no server at 127.0.0.1:9 within 1 s; start one"),
+        (["navigate_naoqi.py", "tcp://127.0.0.1:9", "--goal", "3,0"], "no robot at tcp://127.0.0.1:9: "),
+    ],
+)
+def test_a_node_that_is_started_first_ends_with_a_sentence(words, message):
+    words = [sys.executable, str(EXAMPLES / words[0]), *words[1:]]
+    process = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert process.returncode == 1
+    assert message in process.stderr.splitlines()[-1]
+    assert "Traceback" not in process.stderr
+
+
 @pytest.mark.soak  # on a busy computer, half of the reads see the values of the real robot, and the program is slow
 def test_a_program_on_a_pepper_drives_around_a_virtual_person_to_its_goal(tmp_path):
     trial = load_trial(str(EXAMPLES / "pepper.xml"), duration=600.0)

@@ -171,8 +171,8 @@ def test_requests_and_responses_of_simulation_interfaces_fit_their_types(monkeyp
 class KeptPublisher:
     """Takes the place of a publisher of rclpy for a type whose library is not there."""
 
-    def __init__(self, kind, topic, profile):
-        self.kind, self.topic, self.profile, self.sent = kind, topic, profile, []
+    def __init__(self):
+        self.sent = []
 
     def publish(self, data):
         self.sent.append(data)
@@ -183,7 +183,7 @@ class KeptPublisher:
 
 def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch, domain):
     """The wheels have no ``tf2_msgs``; a user's ROS has. Its class is made from the definition, as rosidl does it."""
-    kind, kept = "tf2_msgs/msg/TFMessage", {}
+    kind, kept, profiles = "tf2_msgs/msg/TFMessage", {}, {}
     package = types.ModuleType("tf2_msgs.msg")
     package.TFMessage = ros_class(kind)
     monkeypatch.setitem(sys.modules, "tf2_msgs", types.ModuleType("tf2_msgs"))
@@ -191,9 +191,10 @@ def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch, domain):
     create = rclpy.node.Node.create_publisher
 
     def create_publisher(self, message, topic, profile, **options):
+        profiles[topic] = profile
         if message is not package.TFMessage:
             return create(self, message, topic, profile, **options)
-        kept[topic] = KeptPublisher(message, topic, profile)
+        kept[topic] = KeptPublisher()
         return kept[topic]
 
     monkeypatch.setattr(rclpy.node.Node, "create_publisher", create_publisher)
@@ -202,9 +203,11 @@ def test_transforms_are_sent_where_tf2_msgs_is_installed(monkeypatch, domain):
         running.end(60.0)
     assert kind not in node.missing
     assert set(kept) == {"/tf", "/tf_static"}
-    assert kept["/tf"].profile.reliability == ReliabilityPolicy.RELIABLE
-    assert kept["/tf"].profile.depth == 100
-    assert kept["/tf_static"].profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+    depths = {"/clock": 1, "/tf": 100, "/robot/odom": 10, "/robot/scan": 5, "/map": 1, "/tf_static": 1}
+    assert {topic: profiles[topic].depth for topic in depths} == depths
+    unreliable = {topic for topic in depths if profiles[topic].reliability == ReliabilityPolicy.BEST_EFFORT}
+    latched = {topic for topic in depths if profiles[topic].durability == DurabilityPolicy.TRANSIENT_LOCAL}
+    assert (unreliable, latched) == ({"/robot/scan"}, {"/map", "/tf_static"})
     assert len(kept["/tf"].sent) >= 20
     seen = {topic: read_transforms(item.sent[-1], package.TFMessage()) for topic, item in kept.items()}
     assert {("map", "robot/odom"), ("robot/odom", "robot/base_link")} <= seen["/tf"]

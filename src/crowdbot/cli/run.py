@@ -105,6 +105,11 @@ def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSourc
             force=options.force,
             sources=sources,
         )
+    if clock is not None and clock.late > 0.0:
+        note(
+            f"warning: the run could not keep up with --pace {clock.rate:g}: {clock.late:.1f} s late. People and robots"
+            " that are moved live are too fast in simulated time; use a simpler trial or a faster machine"
+        )
     return done, time.perf_counter() - begin
 
 

@@ -208,6 +208,8 @@ class PacedClock(Clock):
     rate: float = 1.0
     monotonic: Callable[[], float] = field(default=time.monotonic, compare=False, repr=False)
     sleep: Callable[[float], None] = field(default=time.sleep, compare=False, repr=False)
+    late: float = field(default=0.0, init=False, compare=False, repr=False)
+    """Real time [s] by which ticks were late and that was not caught up."""
     _due: float | None = field(default=None, init=False, compare=False, repr=False)
     _lag: float | None = field(default=None, init=False, compare=False, repr=False)
 
@@ -246,6 +248,7 @@ class PacedClock(Clock):
         if now < self._due:
             self.sleep(self._due - now)
         elif now - self._due > MAX_LAG:
+            self.late += now - self._due
             self._due = now
 
 
