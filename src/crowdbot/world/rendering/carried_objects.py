@@ -14,7 +14,7 @@ from crowdbot.core import stream
 from crowdbot.humans import ACTIVITIES, People, Posture, rest_skeleton, shapes
 from crowdbot.typing import Floats
 
-from .shape_meshes import ShapeMesh, box_mesh, cylinder_mesh, ellipsoid_mesh
+from .shape_meshes import ShapeMesh, box_mesh, cylinder_mesh, ellipsoid_mesh, flat_uv
 
 Color = tuple[float, float, float]
 COLORS = ((0.16, 0.20, 0.30), (0.45, 0.16, 0.14), (0.22, 0.26, 0.20), (0.10, 0.10, 0.11), (0.55, 0.42, 0.28))
@@ -104,16 +104,60 @@ def _rod(start: Floats, end: Floats, radius: float, color: Color) -> CarriedPart
     )
 
 
-def _wheel(h: _Holder, ahead: float, left: float, radius: float) -> CarriedPart:
+def _wheel(h: _Holder, ahead: float, left: float, radius: float) -> list[CarriedPart]:
     turn = h.trunk @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    return CarriedPart(_cylinder(radius, 0.018), turn, h.on_ground(ahead, left, radius), DARK)
+    tyre, spokes = _wheel_meshes(radius)
+    place = h.on_ground(ahead, left, radius)
+    solid = _Solid("cylinder", (radius, TYRE, 0.0))
+    return [
+        CarriedPart(_Shape(tyre, solid), turn, place, DARK),
+        CarriedPart(_Shape(spokes, NO_SOLID), turn, place, METAL),
+    ]
+
+
+TYRE, SPOKES = 0.018, 5
+"""Radius of the tyre of a wheel [m], and number of spokes across the wheel."""
+
+
+@functools.cache
+def _wheel_meshes(radius: float) -> tuple[ShapeMesh, ShapeMesh]:
+    """Return the tyre, and spokes with the hub, of a wheel around the z axis."""
+    around, along = np.linspace(0.0, 2.0 * math.pi, 29), np.linspace(0.0, 2.0 * math.pi, 9)
+    turn, tube = np.meshgrid(around, along, indexing="ij")
+    out = np.stack([np.cos(turn) * np.cos(tube), np.sin(turn) * np.cos(tube), np.sin(tube)], axis=-1)
+    place = (radius - TYRE) * np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=-1) + TYRE * out
+    i, j = (index.ravel() for index in np.meshgrid(np.arange(28), np.arange(8), indexing="ij"))
+    rows = np.concatenate([[(i, j), (i + 1, j), (i + 1, j + 1)], [(i, j), (i + 1, j + 1), (i, j + 1)]], axis=-1)
+    corner, normal = (np.stack([array[a, b] for a, b in rows], axis=1) for array in (place, out))
+    rim = [(radius - TYRE) * np.array([math.cos(a), math.sin(a), 0.0]) for a in np.arange(SPOKES) * math.pi / SPOKES]
+    hub = np.array([0.0, 0.0, 0.025])
+    spokes = [_rod(-end, end, 0.004, METAL) for end in rim] + [_rod(-hub, hub, 0.12 * radius, METAL)]
+    return ShapeMesh(corner, normal, flat_uv(corner, normal), True), _joined(spokes)
+
+
+CALL = (0.62, -0.20, -0.76)
+"""Direction of the lower end of a phone at the right ear, in the frame of the head."""
+
+
+def _call(h: _Holder) -> list[CarriedPart]:
+    """Return a phone in the hand that lies along the cheek, from the ear towards the mouth."""
+    along = np.array(CALL) / math.sqrt(sum(part * part for part in CALL))
+    out = np.cross(along, (-along[2], 0.0, along[0]))
+    turn = h.rotation[shapes().bone("head")] @ np.stack([along, np.cross(out, along), out], axis=1)
+    hand, place = h.hand(1)
+    return _smartphone(turn, place + hand @ (0.055, 0.0, -0.034) + turn @ (-0.05, 0.0, 0.014))
 
 
 def _phone(h: _Holder) -> list[CarriedPart]:
     turn, place = h.hand(1)
+    return _smartphone(turn, place + turn @ (0.085, 0.0, -0.030))
+
+
+def _smartphone(turn: Floats, middle: Floats) -> list[CarriedPart]:
+    screen = middle - 0.006 * turn[:, 2]
     return [
-        CarriedPart(_box(0.145, 0.072, 0.009), turn, place + turn @ (0.085, 0.0, -0.030), DARK),
-        CarriedPart(_box(0.132, 0.064, 0.002), turn, place + turn @ (0.085, 0.0, -0.036), (0.55, 0.72, 0.86)),
+        CarriedPart(_box(0.145, 0.072, 0.009), turn, middle, DARK),
+        CarriedPart(_box(0.132, 0.064, 0.002), turn, screen, (0.55, 0.72, 0.86)),
     ]
 
 
@@ -163,7 +207,8 @@ def _pram(h: _Holder) -> list[CarriedPart]:
     left, right = _bar(h)
     near = float((h.trunk.T @ (0.5 * (left + right) - h.ground))[0])
     parts = [_rod(left, right, 0.014, DARK)]
-    parts += [_wheel(h, near + x, y, r) for x, r in ((0.22, 0.14), (0.78, 0.10)) for y in (0.27, -0.27)]
+    for x, r in ((0.22, 0.14), (0.78, 0.10)):
+        parts += [*_wheel(h, near + x, 0.27, r), *_wheel(h, near + x, -0.27, r)]
     for y, end in ((0.24, left), (-0.24, right)):
         parts += [_rod(end, h.on_ground(near + 0.75, y, 0.20), 0.011, METAL)]
         parts += [_rod(h.on_ground(near + 0.22, y, 0.14), h.on_ground(near + 0.70, y, 0.62), 0.011, METAL)]
@@ -176,14 +221,16 @@ def _pram(h: _Holder) -> list[CarriedPart]:
 def _wheelchair(h: _Holder) -> list[CarriedPart]:
     left, right = _bar(h)
     near = float((h.trunk.T @ (0.5 * (left + right) - h.ground))[0])
-    parts = [_wheel(h, near + 0.22, y, 0.30) for y in (0.28, -0.28)]
-    parts += [_wheel(h, near + 0.66, y, 0.10) for y in (0.22, -0.22)]
+    parts = [*_wheel(h, near + 0.22, 0.28, 0.30), *_wheel(h, near + 0.22, -0.28, 0.30)]
+    parts += [*_wheel(h, near + 0.66, 0.22, 0.10), *_wheel(h, near + 0.66, -0.22, 0.10)]
     for y, end in ((0.22, left), (-0.22, right)):
         parts += [_rod(end, h.on_ground(near + 0.10, y, 0.92), 0.014, DARK)]
         parts += [_rod(h.on_ground(near + 0.10, y, 0.92), h.on_ground(near + 0.16, y, 0.30), 0.013, METAL)]
         parts += [_rod(h.on_ground(near + 0.14, y, 0.48), h.on_ground(near + 0.60, y, 0.46), 0.013, METAL)]
         parts += [_rod(h.on_ground(near + 0.60, y, 0.46), h.on_ground(near + 0.74, y, 0.12), 0.012, METAL)]
         parts += [_rod(h.on_ground(near + 0.18, 1.2 * y, 0.70), h.on_ground(near + 0.50, 1.2 * y, 0.70), 0.02, DARK)]
+        parts += [_rod(h.on_ground(near + x, y, 0.47), h.on_ground(near + x, 1.2 * y, 0.69), 0.01, METAL)
+                  for x in (0.22, 0.46)]  # fmt: skip
     parts.append(CarriedPart(_box(0.44, 0.42, 0.05), h.trunk, h.on_ground(near + 0.37, 0.0, 0.50), h.color))
     parts.append(CarriedPart(_box(0.03, 0.42, 0.42), h.trunk, h.on_ground(near + 0.13, 0.0, 0.72), h.color))
     parts.append(CarriedPart(_box(0.14, 0.34, 0.02), h.trunk, h.on_ground(near + 0.80, 0.0, 0.12), DARK))
@@ -230,16 +277,22 @@ def _backpack(h: _Holder) -> list[CarriedPart]:
     ]
 
 
+SHOULDER_STRAP = (
+    (0.115, -0.150, 1.270), (0.115, -0.125, 1.340), (0.035, -0.110, 1.450), (-0.090, -0.120, 1.395),
+    (-0.105, -0.155, 1.260),
+)  # fmt: skip
+"""Points of the strap of a handbag over the right shoulder of a body of 1.7 m, from the front to the back."""
+
+
 def _handbag(h: _Holder) -> list[CarriedPart]:
     pelvis, chest = shapes().bone("pelvis"), shapes().bone("spine_03")
     turn, s = h.rotation[pelvis], h.scale
-    place = h.position[pelvis] - turn @ h.head[pelvis]
-    bag = place + turn @ (0.0, -0.255 * s, 0.93 * s)
-    shoulder = h.position[chest] + h.rotation[chest] @ (np.array([0.0, -0.115, 1.425]) * s - h.head[chest])
+    bag = h.position[pelvis] + turn @ (np.array([-0.06, -0.245, 0.93]) * s - h.head[pelvis])
+    over = h.position[chest] + (np.array(SHOULDER_STRAP) * s - h.head[chest]) @ h.rotation[chest].T
+    strap = [bag + turn @ (0.12, 0.0, 0.10), *over, bag + turn @ (-0.12, 0.0, 0.10)]
     return [
         CarriedPart(_box(0.30, 0.10, 0.22), turn, bag, h.color),
-        _rod(bag + turn @ (0.12, 0.0, 0.10), shoulder + turn @ (0.05, 0.0, 0.0), 0.009, h.color),
-        _rod(bag + turn @ (-0.12, 0.0, 0.10), shoulder - turn @ (0.05, 0.0, 0.0), 0.009, h.color),
+        *(_rod(a, b, 0.009, h.color) for a, b in itertools.pairwise(strap)),
     ]
 
 
@@ -254,7 +307,7 @@ def _chair(h: _Holder) -> list[CarriedPart]:
 
 
 HELD: dict[str, Callable[[_Holder], list[CarriedPart]]] = {
-    "phone": _phone, "text": _phone, "bottle": _bottle, "read": _book, "carry": _parcel, "stick": _stick, "pram": _pram,
+    "phone": _call, "text": _phone, "bottle": _bottle, "read": _book, "carry": _parcel, "stick": _stick, "pram": _pram,
     "wheelchair": _wheelchair,
 }  # fmt: skip
 HOLDING = [ACTIVITIES.index(name) for name in (*HELD, "sit")]
