@@ -126,3 +126,16 @@ def test_the_strap_of_a_handbag_lies_over_the_shoulder():
     top = strap[strap[:, 2].argmax()]
     near = skin[np.linalg.norm(skin[:, :2] - top[:2], axis=1) < 0.03]
     assert 0.0 < top[2] - near[:, 2].max() < 0.04
+
+
+def test_a_pram_has_a_tub_that_is_open_above_and_a_hood_ahead():
+    scene = Scene.of([[0.0, 0.0]])
+    motion = PeopleMotion(scene, np.array([0]), People.of(["woman-36"]))
+    motion.begin(scene, "pram")
+    parts = carried_parts(motion.people, motion.posture(), motion.state.yaw, motion.state.blend, 0, False)
+    tub, hood = (part for part in parts if not part.mesh.closed)
+    low, high = ((part.mesh.corner.reshape(-1, 3) @ part.turn.T + part.place).mean(axis=0) for part in (tub, hood))
+    assert high[0] > low[0] + 0.1
+    assert high[2] > low[2] + 0.1
+    assert np.all(np.einsum("tci,tci->tc", tub.mesh.normal, tub.mesh.corner - [0.0, 0.0, 0.12]) > 0.0)
+    assert np.all(np.einsum("tci,tci->tc", hood.mesh.normal, hood.mesh.corner) > 0.0)

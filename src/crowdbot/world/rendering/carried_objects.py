@@ -203,6 +203,25 @@ def _bar(h: _Holder) -> tuple[Floats, Floats]:
     return ends[0], ends[1]
 
 
+@functools.cache
+def _bassinet() -> tuple[_Shape, _Shape]:
+    """Return the tub and the hood of a pram, open above and towards the person; rays see them closed."""
+    tub, hood = _half(np.array([0.39, 0.20, 0.30]), math.pi), _half(np.array([0.27, 0.205, 0.27]), 0.6)
+    tub = tub._replace(corner=tub.corner + (0.0, 0.0, 0.12))
+    return _Shape(tub, _Solid("box", (0.36, 0.19, 0.12))), _Shape(hood, _Solid("ellipsoid", (0.27, 0.20, 0.26)))
+
+
+def _half(radius: Floats, pitch: float) -> ShapeMesh:
+    """Return the half of an ellipsoid of radii ``[3]`` [m] around its upper end, pitched forward by an angle [rad]."""
+    unit = ellipsoid_mesh(np.ones(3))
+    upper = unit.corner.mean(axis=1)[:, 2] > 0.0
+    cos, sin = math.cos(pitch), math.sin(pitch)
+    turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+    corner, normal = unit.corner[upper] @ turn * radius, unit.normal[upper] @ turn / radius
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    return ShapeMesh(corner, normal, flat_uv(corner, normal), False)
+
+
 def _pram(h: _Holder) -> list[CarriedPart]:
     left, right = _bar(h)
     near = float((h.trunk.T @ (0.5 * (left + right) - h.ground))[0])
@@ -211,9 +230,12 @@ def _pram(h: _Holder) -> list[CarriedPart]:
         parts += [*_wheel(h, near + x, 0.27, r), *_wheel(h, near + x, -0.27, r)]
     for y, end in ((0.24, left), (-0.24, right)):
         parts += [_rod(end, h.on_ground(near + 0.75, y, 0.20), 0.011, METAL)]
-        parts += [_rod(h.on_ground(near + 0.22, y, 0.14), h.on_ground(near + 0.70, y, 0.62), 0.011, METAL)]
-    parts.append(CarriedPart(_box(0.72, 0.38, 0.24), h.trunk, h.on_ground(near + 0.50, 0.0, 0.68), h.color))
-    parts.append(CarriedPart(_ball(0.27, 0.20, 0.26), h.trunk, h.on_ground(near + 0.66, 0.0, 0.80), h.color))
+        parts += [_rod(h.on_ground(near + 0.22, y, 0.14), h.on_ground(near + 0.66, 0.65 * y, 0.66), 0.011, METAL)]
+    tub, hood = _bassinet()
+    parts.append(CarriedPart(tub, h.trunk, h.on_ground(near + 0.50, 0.0, 0.68), h.color))
+    red, green, blue = h.color
+    shade = 0.5 * red, 0.5 * green, 0.5 * blue
+    parts.append(CarriedPart(hood, h.trunk, h.on_ground(near + 0.66, 0.0, 0.80), shade))
     parts.append(CarriedPart(_ball(0.28, 0.16, 0.07), h.trunk, h.on_ground(near + 0.36, 0.0, 0.80), PAPER))
     return parts
 
