@@ -239,6 +239,9 @@ class TestDesk:
             ("recorded", {"data": "walks", "units": "cm"}, "crowdbot new trial mine.xml --recorded=walks --units=cm"),
             ("recorded", {"data": "hall.csv", "mode": "reactive", "replace": 3, "agents": "pedestrians"},
              "crowdbot new trial mine.xml --recorded=hall.csv --reactive --replace=3 --agents=pedestrians"),
+            ("measure", {"data": ["hall.csv", "walks"], "methods": "line", "line": "0 0, 0 -3", "area": "0 0 4 0 4 2"},
+             "crowdbot measure hall.csv walks --axis=x --methods line --area 0.0 0.0 4.0 0.0 4.0 2.0"
+             " --line 0.0 0.0 0.0 -3.0 --out measurements/mine"),
             ("logs", {"data": ["hall.csv"], "robot_id": "7", "goal": "8, -1", "homography": "H.txt"},
              "crowdbot evaluate --logs hall.csv --robot-id=7 --robot-radius=0.3 --goal 8.0 -1.0 --homography=H.txt"
              " --out evaluations/mine"),
@@ -274,6 +277,8 @@ class TestDesk:
             ("recorded", {"data": "../x.csv"}, "is not a value of this setting"),
             ("recorded", {"data": "example:bottleneck", "replace": 1.5}, "expected a whole number"),
             ("logs", {"data": ["example:bottleneck"], "goal": "here"}, "expected two numbers, x and y"),
+            ("measure", {"data": ["example:bottleneck"], "area": "0 0 4 0"}, "expected corners, an x and a y for each"),
+            ("measure", {"data": ["example:bottleneck"], "line": "0 0 nan 1"}, "expected four numbers, x1 y1 x2 y2"),
             ("logs", {"data": ["example:bottleneck"], "fps": -1}, "expected a number from 0"),
             ("real", {"data": "example:bottleneck", "homography": "/etc/passwd"}, "is not a value of this setting"),
             ("train", {"data": ["example:bottleneck"], "columns": "--out=x"}, "columns: unknown '--out'"),

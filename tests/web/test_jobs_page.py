@@ -1,5 +1,7 @@
 """A person's path through the jobs tab: start a search for failures, reload, see its results, remove it."""
 
+import json
+
 import pytest
 from playwright.sync_api import expect
 
@@ -42,6 +44,21 @@ def test_a_job_survives_a_reload_and_gives_its_results(done, app, axe):
     page.get_by_role("button", name="Remove with results").click()
     page.get_by_text("No job yet").wait_for()
     assert not (app.folder / "falsifications/tries").exists()
+
+
+def test_people_of_a_recording_are_measured_at_a_line(page, app):
+    page.get_by_role("button", name="Measure people").click()
+    form = page.get_by_role("form", name="Measure people")
+    form.get_by_label("Recordings").select_option("example:bottleneck")
+    form.get_by_label("Methods").select_option("line")
+    form.get_by_label("Line for the flow").fill("0 -1 0 1")
+    form.get_by_label("Name of the results").fill("door")
+    form.get_by_role("button", name="Start").click()
+    page.locator(".job.done").wait_for(timeout=300_000)
+    page.get_by_role("button", name="Results door").click()
+    page.get_by_role("link", name="measurements.json").wait_for()
+    (recording,) = json.loads((app.folder / "measurements/door/measurements.json").read_text())["recordings"]
+    assert recording["figures"]["crossings"] > 0
 
 
 def test_what_was_typed_stays_while_other_forms_and_tabs_are_looked_at(page):

@@ -14,6 +14,7 @@ from crowdbot import calibration
 from crowdbot.core import InputError, builtin_classes, did_you_mean
 from crowdbot.falsification import CrossEntropy, PlainSampling, Splitting
 from crowdbot.generation import FORMATS, RECIPES
+from crowdbot.measurement import METHODS
 from crowdbot.prediction import WEIGHTS_FIELDS
 from crowdbot.trials import builtin_trials
 from crowdbot.web.prediction.example_recordings import EXAMPLES, copy_example
@@ -116,7 +117,7 @@ def _trials(space: Workspace) -> list[str]:
 
 
 def _recordings(space: Workspace) -> list[tuple[str, str]]:
-    skipped = ("sessions/", "examples/", "trainings/", "evaluations/", "generated/")
+    skipped = ("sessions/", "examples/", "trainings/", "measurements/", "evaluations/", "generated/")
     names = [file for file in space.files() if file.endswith(RECORDINGS) and not file.startswith(skipped)]
     held = Counter(PurePosixPath(name).parent.as_posix() for name in names)
     folders = [
@@ -196,14 +197,47 @@ def _robot_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
     if values["robot_file"]:
         words += ["--robot-file", *_paths(space, [values["robot_file"]])]
     words += [] if values["robot_radius"] is None else [f"--robot-radius={values['robot_radius']}"]
-    goal = values["goal"].replace(",", " ").split()
+    goal = _metres(values, "goal", "Goal of the robot", "two numbers, x and y", lambda count: count == 2)
+    return [*words, *goal, *option_words(check_options(values), "all")]
+
+
+def _metres(
+    values: Mapping[str, Any], name: str, label: str, expected: str, allowed: Callable[[int], bool]
+) -> list[str]:
+    """Return the option of coordinates [m] that are separated by spaces or commas; nothing for an empty text."""
+    words = values[name].replace(",", " ").split()
     try:
-        numbers = [float(word) for word in goal]
+        numbers = [float(word) for word in words]
     except ValueError:
         numbers = []
-    if goal and len(numbers) != 2:
-        raise InputError(f"Goal of the robot = {values['goal']!r:.60}: expected two numbers, x and y")
-    return [*words, *(["--goal", *map(str, numbers)] if goal else []), *option_words(check_options(values), "all")]
+    if words and not (allowed(len(numbers)) and all(map(math.isfinite, numbers))):
+        raise InputError(f"{label} = {values[name]!r:.60}: expected {expected}")
+    return [f"--{name}", *map(str, numbers)] if words else []
+
+
+def _measure_rows(space: Workspace) -> list[Row]:
+    methods = [("", "all possible"), *((name, f"{name}: {about}") for name, about in METHODS.items())]
+    return [
+        _several_recordings(space),
+        {"name": "methods", "label": "Methods", "kind": "choice", "value": "", "choices": methods},
+        {**_text("area", "Measurement area [m]", ""), "note": "corners x y x y ...; empty: the walkable area"},
+        {**_text("line", "Line for the flow [m]", ""), "note": "x1 y1 x2 y2; empty: none"},
+        {**_text("walkable", "Walkable area [m]", ""),
+         "note": "corners x y x y ...; empty: walls of the recording, or the box of all positions and 1 m"},
+        _choice("axis", "Coordinate along the corridor", ["x", "y"]),
+        _text("name", "Name of the results", "first"),
+        *recording_rows(space, "all"),
+    ]  # fmt: skip
+
+
+def _measure_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
+    words = ["measure", *_paths(space, values["data"]), f"--axis={values['axis']}"]
+    words += ["--methods", values["methods"]] if values["methods"] else []
+    corners = "corners, an x and a y for each of at least three"
+    for name, label in (("area", "Measurement area"), ("walkable", "Walkable area")):
+        words += _metres(values, name, label, corners, lambda count: count >= 6 and count % 2 == 0)
+    words += _metres(values, "line", "Line for the flow", "four numbers, x1 y1 x2 y2", lambda count: count == 4)
+    return [*words, *option_words(check_options(values), "all")]
 
 
 def _logs_rows(space: Workspace) -> list[Row]:
@@ -303,6 +337,10 @@ FORMS = {
     "recorded": JobForm(
         "Trial from a recording", "A trial whose people are those of a recording, as a file of the folder.",
         "", _recorded_rows, _recorded_words,
+    ),
+    "measure": JobForm(
+        "Measure people", "Density, speed, flow and encounters of people in recordings, as tables and plots.",
+        "measurements", _measure_rows, _measure_words,
     ),
     "logs": JobForm(
         "Measure recordings of robots", "Metrics of recordings of robots among people.",
