@@ -164,7 +164,7 @@ def test_messages_cover_no_control_in_any_tab(page, width, height):
         for count in range(3):
             page.evaluate("(file) => crowdbot.openInSimulator({ file })", "no-such-hall" * (1 + 4 * count) + ".mcap")
         expect(page.locator(".message.error")).to_have_count(3)
-        page.wait_for_function(f"({COVERED})().length === 0")
+        page.wait_for_function(f"() => ({COVERED})().length === 0")
         box = page.locator(".messages").bounding_box()
         assert 0 <= box["x"] <= width - box["width"]
         assert 0 <= box["y"] <= height - box["height"]

@@ -29,13 +29,15 @@ state.describe(JSON.parse(readFileSync(`${folder}/description.json`, "utf8")), b
 if (!state.apply(decodeFrame(read("frame.bin")))) throw new Error("the revision differs");
 const bones = new Float32Array(state.people * 224);
 state.pose(bones, 224);
-const { source, bones: index, weights, rest } = body.arrays;
+const { source, bones: index, weights, rest, long, short, group, stature } = body.arrays;
 const all = rest.length / 3 / 45;
 const out = new Float32Array(3 * state.people * source.length);
-const { body: bodies, scale } = state.description.people;
+const { body: bodies, scale, height, cuts } = state.description.people;
 for (let i = 0; i < state.people; i++) for (let v = 0; v < source.length; v++) {
   const who = state.frame.arrays.who[i];
+  const cut = [null, long, short][cuts[who][group[v]]];
   const p = [0, 1, 2].map((c) => 1e-4 * scale[who] * rest[3 * (bodies[who] * all + source[v]) + c]);
+  if (cut) p.forEach((_, c) => (p[c] += 1e-4 * (height[who] / stature[0]) * cut[3 * v + c]));
   for (let k = 0; k < 4; k++) {
     const at = i * 224 + 8 * index[4 * v + k];
     const [x, y, z, w, dx, dy, dz] = bones.subarray(at, at + 7);

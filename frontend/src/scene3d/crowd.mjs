@@ -5,7 +5,7 @@ import { drawPeople } from "./crowd_shader.mjs";
 
 export const LEVELS = 3;
 const REST_WIDTH = 2048;
-const ROW = 4 * (2 * BONES + 2);
+const ROW = 4 * (2 * BONES + 3);
 const PIXELS = [190, 64];
 const MOST = [16, 80];
 const UNIT = 1e-4;
@@ -20,6 +20,7 @@ export class Crowd {
     this.capacity = 0;
     this._boneMap = { value: null };
     this._colorMap = { value: null };
+    this._stature = meshes[0].arrays.stature[0];
     this._levels = meshes.map((mesh) => this._level(mesh.arrays));
     this._shade = blobs();
     this.group.add(this._shade);
@@ -67,7 +68,7 @@ export class Crowd {
     this.shadeDepth = shade;
     state.pose(this.bones, ROW);
     const { who, ids } = state.frame.arrays;
-    const { body, scale, parts } = state.description.people;
+    const { body, scale, parts, height, cuts } = state.description.people;
     for (let i = 0; i < count; i++) {
       const at = i * ROW + 8 * BONES;
       this.bones[at] = body[who[i]];
@@ -79,6 +80,8 @@ export class Crowd {
       this.bones[at + 5] = markColor.g;
       this.bones[at + 6] = markColor.b;
       this.bones[at + 7] = tint;
+      this.bones.set(cuts[who[i]], at + 8);
+      this.bones[at + 11] = height[who[i]] / this._stature;
     }
     this._boneMap.value.needsUpdate = true;
     this._state = state;
@@ -162,9 +165,12 @@ export class Crowd {
     geometry.setAttribute("source", new THREE.BufferAttribute(Float32Array.from(arrays.source), 1));
     geometry.setAttribute("boneIndex", new THREE.BufferAttribute(arrays.bones, 4));
     geometry.setAttribute("boneWeight", new THREE.BufferAttribute(arrays.weights, 4, true));
-    const kinds = new Uint8Array(2 * arrays.region.length);
-    arrays.region.forEach((region, k) => kinds.set([region, arrays.part[k]], 2 * k));
-    geometry.setAttribute("regionPart", new THREE.BufferAttribute(kinds, 2));
+    const kinds = new Uint8Array(3 * arrays.region.length);
+    arrays.region.forEach((region, k) => kinds.set([region, arrays.part[k], arrays.group[k]], 3 * k));
+    geometry.setAttribute("regionPartGroup", new THREE.BufferAttribute(kinds, 3));
+    for (const cut of ["long", "short"]) {
+      geometry.setAttribute(`${cut}Cut`, new THREE.BufferAttribute(Float32Array.from(arrays[cut], (one) => UNIT * one), 3));
+    }
     const map = restTexture(arrays.rest);
     (this._rests ??= []).push(map);
     const uniforms = {

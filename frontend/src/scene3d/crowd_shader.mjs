@@ -1,4 +1,5 @@
-// Shader of people: linear blend skinning of instances with 28 bones from a texture, as crowdbot.humans does it.
+// Shader of people: linear blend skinning of instances with 28 bones from a texture, with clothes that hang off the body,
+// as crowdbot.humans does it.
 const DECLARATIONS = /* glsl */ `
 uniform highp sampler2D restMap;
 uniform highp sampler2D boneMap;
@@ -6,7 +7,9 @@ uniform float vertices;
 attribute float source;
 attribute vec4 boneIndex;
 attribute vec4 boneWeight;
-attribute vec2 regionPart;
+attribute vec3 regionPartGroup;
+attribute vec3 longCut;
+attribute vec3 shortCut;
 attribute float slot;
 #ifdef CROWD_COLOR
 uniform sampler2D colorMap;
@@ -21,6 +24,9 @@ int row = int(slot + 0.5);
 vec4 who = texelFetch(boneMap, ivec2(56, row), 0);
 int at = int(who.x * vertices + source + 0.5);
 vec3 restPoint = texelFetch(restMap, ivec2(at & 2047, at >> 11), 0).xyz * who.y;
+vec4 worn = texelFetch(boneMap, ivec2(58, row), 0);
+int cut = int(worn[int(regionPartGroup.z + 0.5)] + 0.5);
+restPoint += worn.w * (cut == 1 ? longCut : cut == 2 ? shortCut : vec3(0.0));
 vec3 skinned = vec3(0.0);
 vec3 bent = vec3(0.0);
 for (int k = 0; k < 4; k++) {
@@ -30,7 +36,7 @@ for (int k = 0; k < 4; k++) {
   skinned += boneWeight[k] * (turnBy(q, restPoint) + shift);
   bent += boneWeight[k] * turnBy(q, normal);
 }
-bool worn = ((int(who.z + 0.5) >> int(regionPart.y + 0.5)) & 1) == 1;
+bool shown = ((int(who.z + 0.5) >> int(regionPartGroup.y + 0.5)) & 1) == 1;
 `;
 
 /** Changes a material so that it draws people. `uniforms` are shared by the materials of a level. */
@@ -44,9 +50,9 @@ export function drawPeople(material, uniforms, color) {
       .replace("#include <beginnormal_vertex>", "vec3 objectNormal = normalize(bent);")
       .replace(
         "#include <begin_vertex>",
-        `vec3 transformed = worn ? skinned : vec3(0.0, 0.0, -1.0e4);
+        `vec3 transformed = shown ? skinned : vec3(0.0, 0.0, -1.0e4);
         #ifdef CROWD_COLOR
-        vCloth = texelFetch(colorMap, ivec2(int(regionPart.x + 0.5), int(who.w + 0.5)), 0).rgb;
+        vCloth = texelFetch(colorMap, ivec2(int(regionPartGroup.x + 0.5), int(who.w + 0.5)), 0).rgb;
         vTint = texelFetch(boneMap, ivec2(57, row), 0);
         #endif`,
       );

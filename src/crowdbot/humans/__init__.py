@@ -8,6 +8,7 @@ from .clip import Bvh, Clip, clip_of, read_bvh, read_clip, write_clip
 from .fall_pose import LYING, FallPose, blend_fall_poses, fall_postures
 from .feet import Gaits
 from .gait import CHAIR, WHEELCHAIR, Gait, Seat, posing_and_skinning
+from .garments import LONG, SHORT, drape
 from .keypoints import KEYPOINT_EDGES, KEYPOINTS, RestSkeleton, keypoint_places, rest_skeleton
 from .limbs import LIMBS, REGIONS, Limb, limb_chain, mass_shares, striking_mass
 from .people import Capsules, People
@@ -26,8 +27,10 @@ __all__ = [
     "KEYPOINT_EDGES",
     "LEVELS",
     "LIMBS",
+    "LONG",
     "LYING",
     "REGIONS",
+    "SHORT",
     "WHEELCHAIR",
     "BodyPose",
     "BodyRows",
@@ -54,6 +57,7 @@ __all__ = [
     "blend_fall_poses",
     "body_uv",
     "clip_of",
+    "drape",
     "eye_offsets",
     "fall_postures",
     "import_body",

@@ -30,9 +30,9 @@ def scene_description(simulation: Simulation, people: PeopleMotion | None = None
     Keys: ``revision``; ``name``, ``about``, ``world``, ``duration``; ``bounds`` x0, y0, x1, y1 and ``focus`` x, y [m];
     ``stage`` (walls, ground, doors, props); ``zones``; ``regions`` and ``parts`` of bodies; ``people`` with lists for
     all people: ``body`` (row of the asset), ``kind`` (its name), ``scale``, ``height`` [m], ``colors`` (six digits for
-    each region), ``parts`` (bits of the parts that are worn), ``radius`` [m] and ``rider``; ``robots``; ``sensors``;
-    ``images`` of cameras, see :func:`image_descriptions`; ``layers`` (names and titles of
-    :data:`crowdbot.web.scene.LAYERS`).
+    each region), ``cuts`` (of shirt, sleeves and trousers: 0 tight, 1 long, 2 short), ``parts`` (bits of the parts that
+    are worn), ``radius`` [m] and ``rider``; ``robots``; ``sensors``; ``images`` of cameras, see
+    :func:`image_descriptions`; ``layers`` (names and titles of :data:`crowdbot.web.scene.LAYERS`).
 
     Args:
         simulation: the simulation.
@@ -77,6 +77,7 @@ def _people(simulation: Simulation, motion: PeopleMotion) -> dict[str, Any]:
         "scale": scale.round(6).tolist(),
         "height": people.height.round(4).tolist(),
         "colors": [_hex(region_colors(outfit)) for outfit in people.outfits],
+        "cuts": people.cuts.tolist(),
         "parts": [sum(1 << part for part in worn_parts(outfit)) for outfit in people.outfits],
         "radius": simulation.world.environment_scene(0).radius[0, motion.agents].round(4).tolist(),
         "rider": riders.tolist(),

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.humans import LEVELS, shapes
+from crowdbot.humans import LEVELS, LONG, SHORT, drape, shapes
 from crowdbot.typing import Floats
 from crowdbot.web.desk import Resource
 from crowdbot.web.state_frame import StateFrame
@@ -59,10 +59,12 @@ def body_mesh(level: int) -> StateFrame:
     A vertex of the asset that belongs to faces of several regions is there once for each, so that colours have sharp
     edges. Arrays: ``rest`` [bodies * V, 3] in 0.1 mm, ``heads`` [bodies * 28, 3] starts of the bones [m], ``parents``
     [28], and for each vertex ``source`` (row in ``rest`` of the first body), ``normal`` [3] of the mean body,
-    ``bones`` [4], ``weights`` [4] in 1/65535, ``region`` and ``part``; ``faces`` [F, 3].
+    ``bones`` [4], ``weights`` [4] in 1/65535, ``region`` and ``part``; ``faces`` [F, 3]. For clothes, ``long`` and
+    ``short`` [3] in 0.1 mm, by which these cuts move the vertex on a body of the stature ``stature`` [1] [m], and
+    ``group`` of each vertex: 0 shirt, 1 sleeves, 2 trousers.
     """
     every = shapes()
-    mesh = every.levels[level]
+    mesh, cloth = every.levels[level], drape(level)
     corner = np.stack([mesh.faces.ravel(), np.repeat(mesh.face_region, 3), np.repeat(mesh.face_part, 3)], axis=1)
     vertex, faces = np.unique(corner, axis=0, return_inverse=True)
     source = vertex[:, 0]
@@ -80,6 +82,10 @@ def body_mesh(level: int) -> StateFrame:
             "region": vertex[:, 1].astype(np.uint8),
             "part": vertex[:, 2].astype(np.uint8),
             "faces": faces.reshape(-1, 3).astype(np.uint16),
+            "long": np.round(cloth.shift[LONG][source] / UNIT).astype(np.int16),
+            "short": np.round(cloth.shift[SHORT][source] / UNIT).astype(np.int16),
+            "group": cloth.group[source].astype(np.uint8),
+            "stature": np.array([cloth.height], dtype=np.float32),
         },
     )  # fmt: skip
 
