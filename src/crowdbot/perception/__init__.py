@@ -6,7 +6,9 @@ Contracts: :class:`Detector`, :class:`Tracker` and :class:`ScanPredictor`.
 from .camera import BoxDetector, Boxes, HogPeople, NetworkPeople
 from .clusters import CloudClusters, DepthClusters, LidarClusters, hide_walls
 from .detector import Coverage, Detections, Detector
+from .moving_people import MovingPeople
 from .scan_network import NetworkFit, ScanNetwork, train_scan_network
+from .scan_odometry import OdometryState, ScanOdometry
 from .scan_prediction import (
     LastScan,
     LearnedScene,
@@ -48,11 +50,14 @@ __all__ = [
     "LidarClusters",
     "MotionFit",
     "MovedScan",
+    "MovingPeople",
     "NetworkFit",
     "NetworkPeople",
+    "OdometryState",
     "PredictorMotion",
     "ScanForecast",
     "ScanNetwork",
+    "ScanOdometry",
     "ScanPredictor",
     "SceneState",
     "TrackedScene",

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Walls, kernel
+from crowdbot.core import InputError, Walls, kernel, storable
 from crowdbot.sensors import Reading
 from crowdbot.typing import Floats
 
@@ -20,6 +20,7 @@ BEHIND = 0.6
 """A place is hidden if the beams end this far [m] before it."""
 
 
+@storable
 @dataclass(frozen=True)
 class Coverage:
     """What a scanner could see: the distance up to which each beam would have met a person.

@@ -34,13 +34,15 @@ def score_annotated(options: argparse.Namespace) -> int:
     """Print precision, recall and error of the detectors, and of the trackers behind them."""
     from crowdbot.core import InputError
     from crowdbot.evaluation import score_positions
+    from crowdbot.perception import ScanOdometry
 
     if options.by or options.predictor or options.plot or options.trial:
         raise InputError("--by, --predictor, --plot and --trial are for trials and episodes, not for recorded scans")
     clouds = any(Path(options.source).glob("*.pcd"))
     options.detector = options.detector or ["cloud-clusters" if clouds else "lidar-clusters"]
     detectors, trackers = chosen_detectors(options), chosen_trackers(options)
-    scores = score_positions(read_annotated(options), detectors, trackers, options.reach)
+    odometry = ScanOdometry() if options.match_scans else None
+    scores = score_positions(read_annotated(options), detectors, trackers, options.reach, odometry)
     name, first = Path(options.source).name, next(iter(scores.values()))
     if options.json:
         print_json({"source": name, "people": first.people,
@@ -58,7 +60,8 @@ def score_annotated(options: argparse.Namespace) -> int:
         ]
         for key, score in scores.items()
     ]
-    caption = f"{first.people} annotated people without identities; no map, no odometry; reach {options.reach:g} m"
+    motion = "motion of the scanner from its scans" if options.match_scans else "no odometry"
+    caption = f"{first.people} annotated people without identities; no map, {motion}; reach {options.reach:g} m"
     head = ("detector, tracker", "precision", "recall", "F1", "error [m]", "positions", "false a scan")
     print_table(f"{name}, recorded scans", head, table, caption)
     return 0

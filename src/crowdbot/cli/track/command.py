@@ -115,6 +115,8 @@ def arguments(parser: CommandParser) -> None:
         " tracking them")  # fmt: skip
     add("--nobody", action="store_true", help="nobody is in the scans of a bag (.bag, .db3) without labels: each"
         " position is false")  # fmt: skip
+    add("--match-scans", action="store_true", help="estimate the motion of the scanner of recorded planar scans from"
+        " the scans (default: it stands)")  # fmt: skip
     add("--no-map", action="store_true", help="do not tell the detector the walls of the stage")
     add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker")
     add_video(parser)
@@ -135,6 +137,8 @@ def main(options: argparse.Namespace) -> int:
     options.reach = options.reach or REACH
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")
+    if (options.match_scans or options.nobody) and (options.scenes or not is_annotated(options.source)):
+        raise InputError("--match-scans and --nobody are for recorded scans; trials and episodes know both")
     if options.statistics and not options.scenes:
         return print_statistics(options)
     if not options.scenes:

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from crowdbot.core import DataError
 from crowdbot.metrics import match_nearest
-from crowdbot.perception import Detector, Tracker
+from crowdbot.perception import Detector, OdometryState, ScanOdometry, Tracker
+from crowdbot.sensors import planar_pose
 from crowdbot.typing import Floats
 
 from .annotated_scan import AnnotatedScan
 
 LONGEST_GAP = 1.0
-"""After a longer time without a scan [s], trackers begin again."""
+"""After a longer time without a scan [s], trackers and the odometry begin again."""
 
 
 class DetectionScores(NamedTuple):
@@ -51,8 +52,11 @@ class _Count:
     distance: float = 0.0
 
     def add(self, place: Floats, row: AnnotatedScan) -> None:
-        """Count the positions in an annotated scan."""
+        """Count the positions ``[N, 2]`` in the world [m] in an annotated scan."""
         assert row.people is not None
+        pose = planar_pose(row.scan.pose)
+        cosine, sine = math.cos(float(pose.heading[0])), math.sin(float(pose.heading[0]))
+        place = (place - pose.position[0]) @ np.array([[cosine, -sine], [sine, cosine]])
         away = np.linalg.norm(row.people[:, None] - place[None], axis=-1)
         a, b = match_nearest(away, self.reach)
         box = row.ignored[:, None]
@@ -98,18 +102,19 @@ class _Following:
 
 def score_positions(
     rows: Iterable[AnnotatedScan], detectors: Mapping[str, Detector], trackers: Mapping[str, Tracker],
-    reach: float = 0.5,
+    reach: float = 0.5, odometry: ScanOdometry | None = None,
 ) -> dict[str, DetectionScores]:  # fmt: skip
     """Return the scores of each detector, and of each tracker behind each detector, in one pass over the scans.
 
-    Trackers follow all scans; scans without annotations do not count. The scanner stands still for them: without
-    odometry its motion adds to that of people. They begin again if the time steps back or by more than 1 s.
+    Trackers follow all scans; scans without annotations do not count. Without odometry the scanner stands still for
+    them: its motion adds to that of people. They begin again if the time steps back or by more than 1 s.
 
     Args:
         rows: scans in the order of their recording.
         detectors: detectors by name.
         trackers: trackers by name.
         reach: largest distance of a person and a position [m]; 0.5 m as in the work on DROW and FROG.
+        odometry: estimates the motion of a planar scanner from the scans.
 
     Returns:
         Scores by ``detector`` and by ``detector, tracker``.
@@ -123,7 +128,7 @@ def score_positions(
         (name, label): _Following(tracker, _Count(reach)) for name in detectors for label, tracker in trackers.items()
     }
     annotated = 0
-    for row in rows:
+    for row in rows if odometry is None else place_scans(rows, odometry):
         annotated += row.people is not None
         time = float(np.max(row.scan.time))
         for name, detector in detectors.items():
@@ -134,7 +139,7 @@ def score_positions(
                 counts[name].add(found.position, row)
             for label in trackers:
                 one = following[name, label]
-                if not one.time < time <= one.time + LONGEST_GAP:
+                if not _follows(time, one.time):
                     one.state = one.tracker.begin()
                 tracks, one.state = one.tracker.update(found, time, one.state)
                 one.time = time
@@ -147,6 +152,22 @@ def score_positions(
         scores[name] = count.scores()
         scores |= {f"{name}, {label}": following[name, label].count.scores() for label in trackers}
     return scores
+
+
+def _follows(time: float, before: float) -> bool:
+    """Return whether a scan is the next one of a recording without a gap."""
+    return before < time <= before + LONGEST_GAP
+
+
+def place_scans(rows: Iterable[AnnotatedScan], odometry: ScanOdometry) -> Iterator[AnnotatedScan]:
+    """Yield the scans with the poses of the odometry, which begins again at the origin after a gap of 1 s."""
+    state: OdometryState | None = None
+    before = -math.inf
+    for row in rows:
+        time = float(np.max(row.scan.time))
+        pose, state = odometry.update(row.scan, state if _follows(time, before) else None)
+        before = time
+        yield row._replace(scan=replace(row.scan, pose=pose))
 
 
 def score_detections(rows: Iterable[AnnotatedScan], detector: Detector, reach: float = 0.5) -> DetectionScores:
