@@ -113,5 +113,7 @@ def test_the_command_matches_recorded_scans_only(tmp_path, capsys):
     (tmp_path / "walk.wp").write_text("0,[[2.0, 0.0]]\n")
     assert main(["track", str(tmp_path / "walk.csv"), "--match-scans"]) == 0
     assert "no map, motion of the scanner from its scans" in capsys.readouterr().out
+    assert main(["track", str(tmp_path / "walk.csv"), "--match-scans", "--statistics"]) == 2
+    assert "--statistics do not depend on the motion of the scanner" in capsys.readouterr().err
     assert main(["track", "two-way", "--match-scans"]) == 2
     assert "--match-scans and --nobody are for recorded scans" in capsys.readouterr().err

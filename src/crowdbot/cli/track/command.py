@@ -139,6 +139,8 @@ def main(options: argparse.Namespace) -> int:
         raise InputError(f"--starts {options.starts} must be at least 1")
     if (options.match_scans or options.nobody) and (options.scenes or not is_annotated(options.source)):
         raise InputError("--match-scans and --nobody are for recorded scans; trials and episodes know both")
+    if options.match_scans and options.statistics:
+        raise InputError("--match-scans is for trackers; --statistics do not depend on the motion of the scanner")
     if options.statistics and not options.scenes:
         return print_statistics(options)
     if not options.scenes:
