@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import os
 import signal
 import subprocess
@@ -24,10 +25,10 @@ from rosbags.highlevel import AnyReader
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, InputError
-from crowdbot.recording import RecordedEpisode, read_episode, run
+from crowdbot.recording import RecordedEpisode, read_episode, record, run
 from crowdbot.sensors import Reading, Sensor, SensorView
 from crowdbot.simulation import Episode
-from crowdbot.trials import Mount, parse_trial
+from crowdbot.trials import Mount, load_trial, parse_trial
 from trial_texts import GOOD, changed
 
 TRIAL = parse_trial(GOOD)
@@ -344,3 +345,21 @@ def test_damaged_bytes_never_show_a_stack_trace(recorded: tuple[Path, Episode], 
             wrong.append(str(error))
     assert len(wrong) > 50
     assert all("damaged" in sentence or "does not hold" in sentence for sentence in wrong)
+
+
+@pytest.mark.parametrize("name", ["four-blocks", "blind-corner", "circle-crossing"])
+def test_the_map_is_occupied_where_a_solid_is_near_or_the_area_ends(name: str, tmp_path: Path) -> None:
+    trial = load_trial(name, duration=0.1)
+    record(trial, out=tmp_path)
+    with AnyReader([tmp_path / "episode.mcap"]) as bag:
+        links = [link for link in bag.connections if link.topic == "/map"]
+        ((_, stamp, raw),) = bag.messages(links)
+        grid = bag.deserialize(raw, links[0].msgtype)
+    info, corner = grid.info, grid.info.origin.position
+    cell = round(info.resolution, 6)  # the message has 32 bits
+    x, y = corner.x + cell * (np.arange(info.width) + 0.5), corner.y + cell * (np.arange(info.height) + 0.5)
+    away = trial.stage.clearance(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+    occupied = np.where(away <= cell * math.sqrt(0.5), 100, 0)
+    assert (stamp, grid.header.frame_id) == (0, "map")
+    assert np.array_equal(grid.data, occupied)
+    assert bool(occupied.any()) == bool(trial.stage.rings)

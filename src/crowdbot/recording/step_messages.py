@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -83,17 +83,26 @@ def map_message(make: Messages, stage: Stage, scene: Scene) -> Any:
 
 
 def _occupied(stage: Stage, low: Floats, cell: float, shape: tuple[int, int]) -> Bools:
-    """Return the occupied cells ``[height, width]``; cells in blocks that are far away from solids are not measured."""
+    """Return the occupied cells ``[height, width]``; blocks that are free or solid as a whole are not divided."""
+    occupied = np.zeros(shape, dtype=np.bool_)
     chosen = np.ones([-(-count // BLOCKS[0]) for count in shape], dtype=np.bool_)
     for size, finer in zip(BLOCKS, (*BLOCKS[1:], 1), strict=True):
         rows, columns = np.nonzero(chosen)
-        centres = low + cell * size * (np.stack([columns, rows], axis=1) + 0.5)
+        places = np.stack([columns, rows], axis=1)
         reach = cell * math.sqrt(0.5) * (size + (size > 1))  # of the cells in a block, and of their own
-        chosen[rows, columns] = stage.clearance(centres) <= reach
-        times = size // finer
-        chosen = np.repeat(np.repeat(chosen, times, axis=0), times, axis=1)
-        chosen = chosen[: -(-shape[0] // finer), : -(-shape[1] // finer)]
-    return chosen
+        near = stage.clearance(low + cell * size * (places + 0.5)) <= reach
+        solid = near.copy()
+        if size > 1:
+            solid[near] = stage.fills(*(low + cell * size * (places[near] + end) for end in (0, 1)))
+        chosen[rows, columns] = solid
+        occupied |= _divided(chosen, size, shape)
+        chosen[rows, columns] = near & ~solid
+        chosen = _divided(chosen, size // finer, [-(-count // finer) for count in shape])
+    return occupied
+
+
+def _divided(cells: Bools, times: int, shape: Sequence[int]) -> Bools:
+    return np.repeat(np.repeat(cells, times, axis=0), times, axis=1)[: shape[0], : shape[1]]
 
 
 def _bounds(stage: Stage, scene: Scene) -> tuple[Floats, Floats]:

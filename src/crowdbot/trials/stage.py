@@ -185,6 +185,15 @@ class Stage:
             away = np.where(shapely.covers(self._area, places), away, 0.0)
         return away
 
+    def fills(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return ``[N]`` whether boxes, from ``low`` to ``high`` ``[N, 2]``, lie in one solid or outside the area."""
+        import shapely
+
+        boxes = shapely.box(*low.T, *high.T)
+        outside = shapely.disjoint(self._area, boxes) if self.bounded else np.zeros(len(boxes), dtype=np.bool_)
+        outside[self._blocks.query(boxes, predicate="covered_by")[0]] = True
+        return np.asarray(outside)
+
     def holds(self, shape: Any) -> bool:
         """Return whether a shapely geometry lies in the walkable area; always true without one."""
         return not self.bounded or bool(self._area.buffer(1e-9).covers(shape))

@@ -20,6 +20,7 @@ from crowdbot.bridges.interface import (
     SENSOR,
     InputTopic,
     OutputTopic,
+    Request,
     RobotInterface,
     read_heading,
     read_point,
@@ -43,7 +44,7 @@ class OdometryInput(InputTopic):
 
     take: Callable[[float, float, float], None] = lambda x, y, heading: None
 
-    def orders(self, fields: Mapping[str, Any], sender: str = "") -> list[Order]:
+    def requests(self, fields: Mapping[str, Any], sender: str = "") -> list[Request]:
         """Give the pose of a message to ``take``; it gives no order.
 
         Raises:
@@ -62,7 +63,7 @@ class StopInput(InputTopic):
 
     take: Callable[[bool], None] = lambda stop: None
 
-    def orders(self, fields: Mapping[str, Any], sender: str = "") -> list[Order]:
+    def requests(self, fields: Mapping[str, Any], sender: str = "") -> list[Request]:
         # give the value to take; it gives no order. What is not plainly false stops
         self.take(not (isinstance(fields, Mapping) and fields.get("data") is False))
         return []
