@@ -22,7 +22,7 @@ from fuzzing import check_sentence, flatten_mcap
 from crowdbot.core import CrowdbotError
 
 ROOT = Path(__file__).parents[1]
-sys.path.append(str(ROOT / "tests" / "data"))
+sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "data")]
 SAMPLES = ROOT / "tests" / "fuzz-samples"
 ASSETS = ROOT / "src" / "crowdbot" / "assets"
 OUT = "out"

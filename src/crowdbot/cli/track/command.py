@@ -99,8 +99,7 @@ def arguments(parser: CommandParser) -> None:
     """Declare the options."""
     add = parser.add_argument
     add("source", metavar="SOURCE", nargs="?", help="trial file, name of a built-in trial,"
-        " episode (.mcap), or recorded scans with annotated people (DROW .csv, FROG .h5, folder of L-CAS, .bag of"
-        " leg_tracker)")  # fmt: skip
+        " episode (.mcap), or recorded scans (DROW .csv, FROG .h5, L-CAS, .bag)")  # fmt: skip
     add("--scenes", action="store_true", help="five scenes instead of SOURCE: low density, high density, occlusion,"
         " noise, moving robot")  # fmt: skip
     add_choice(parser)
@@ -113,10 +112,8 @@ def arguments(parser: CommandParser) -> None:
         " are compared; for a video the predictor of the tracks (default: none, or constant-velocity)")  # fmt: skip
     add("--statistics", action="store_true", help="count the returns of people in the scans, by distance, instead of"
         " tracking them")  # fmt: skip
-    add("--nobody", action="store_true", help="nobody is in the scans of a bag (.bag, .db3) without labels: each"
-        " position is false")  # fmt: skip
-    add("--match-scans", action="store_true", help="estimate the motion of the scanner of recorded planar scans from"
-        " the scans (default: it stands)")  # fmt: skip
+    add("--nobody", action="store_true", help="each position is false: nobody is in the bag")
+    add("--match-scans", action="store_true", help="estimate the motion of the scanner of a recording")
     add("--no-map", action="store_true", help="do not tell the detector the walls of the stage")
     add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker")
     add_video(parser)

@@ -16,11 +16,9 @@ if TYPE_CHECKING:
 def add_runs(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
     """Add the options for the sensor and the runs."""
     add = parser.add_argument
-    add("--sensor", default="", metavar="ROBOT/SENSOR", help="sensor, or topic of scans in a bag (default: the first"
-        " that the detector reads)")  # fmt: skip
+    add("--sensor", default="", metavar="ROBOT/SENSOR", help="sensor, or topic of a bag (default: the first)")
     add("--starts", type=int, default=1, metavar="N", help="runs of a trial, by consecutive seeds (default: 1)")
-    add("--duration", type=float, metavar="SECONDS", help="simulated time of a trial, or time that is read of a"
-        " folder of OGM-Turtlebot2 (default: all)")  # fmt: skip
+    add("--duration", type=float, metavar="SECONDS", help="time that is simulated or read (default: all)")
     add_settings(parser, option="--trial")
     add("--trust", action="store_true", help="allow code outside the folder of a trial")
 
