@@ -101,6 +101,7 @@ def test_a_cut_net_is_shown_and_the_edit_that_did_not_arrive_is_told(page, app):
     page.wait_for_function("() => !crowdbot.connection.open")
     sentence = page.evaluate("crowdbot.connection.call('editor.undo').catch((error) => error.message)")
     assert sentence == "the server is not connected"
+    page.wait_for_function("() => crowdbot.connection.open")  # the word before the cut is still there for a moment
     page.locator(".connection:not(.lost):has-text('connected')").wait_for()
     assert (
         page.evaluate("crowdbot.connection.call('editor.start', {trial: 'frontal'}).then((one) => one.revision)") == 1
