@@ -139,7 +139,7 @@ def test_a_run_sends_each_reading_once_and_only_the_chosen_images(tmp_path):
         for _ in range(20):
             steps(desk, 2)
             wait_until(lambda: not desk._cameras._waiting)
-        wait_until(lambda: images(desk, DEPTH)[-1].time > 2.0)
+        wait_until(lambda: images(desk, DEPTH)[-1].time > 2.1)  # the last reading of 2.2 s
         found = images(desk, DEPTH)
         times = [one.time for one in found]
         assert np.diff(times) == pytest.approx(0.2)  # 5 Hz, although the time step is 0.05 s
@@ -153,6 +153,29 @@ def test_a_run_sends_each_reading_once_and_only_the_chosen_images(tmp_path):
         steps(desk, 8)
         desk.show_frame()
         assert images(desk, DEPTH) == []
+
+
+def test_a_frame_of_the_run_between_a_choice_and_its_answer_sends_nothing_twice(tmp_path, monkeypatch):
+    (tmp_path / "seen.xml").write_text(TRIAL)
+    with simulator(tmp_path) as desk:
+        call_command(desk, "open", {"name": "seen.xml", "seed": 1, "paused": True})
+        ready(desk)
+        steps(desk, 4)
+        choose = desk._cameras.choose
+
+        def choose_and_show(names):
+            choose(names)
+            desk.run.do(lambda: desk.run.view.show(always=True))  # as the run does after its step
+            wait_until(lambda: images(desk, DEPTH))
+
+        monkeypatch.setattr(desk._cameras, "choose", choose_and_show)
+        call_command(desk, "cameras", {"names": [DEPTH]})
+        wait_until(lambda: not desk._cameras._waiting)
+        call_command(desk, "layers", {"names": ["velocities"]})
+        wait_until(lambda: not desk._cameras._waiting)
+        steps(desk, 4)
+        wait_until(lambda: len(images(desk, DEPTH)) > 1)
+        assert [frame.time for frame in images(desk, DEPTH)] == pytest.approx([0.2, 0.4])
 
 
 def test_recorded_images_are_shown_from_the_records(tmp_path):

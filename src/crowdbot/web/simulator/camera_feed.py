@@ -76,9 +76,9 @@ class CameraFeed:
             if image.name not in self.chosen:
                 continue
             token, make = _newest(image, recorded)
-            if token is None or self._known.get(image.name) is token:
-                continue
-            with self._changed:
+            with self._changed:  # another thread may choose in the meantime
+                if token is None or image.name not in self.chosen or self._known.get(image.name) is token:
+                    continue
                 self._known[image.name] = token
                 self._waiting[image.name] = image, number, revision, make
                 self._changed.notify_all()

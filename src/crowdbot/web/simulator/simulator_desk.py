@@ -430,8 +430,13 @@ class SimulatorDesk(Desk):
     @command
     def show_frame(self) -> None:
         """Send the current state again, for a new window."""
-        player = self._any()
+        self._any()
         self._cameras.renew()
+        self._show()
+
+    def _show(self) -> None:
+        """Send the current state, and of the images those that the windows do not have."""
+        player = self._any()
         if (recorded := self._beginning()) is not None:
             recorded.show()
         elif player.state != "preparing":  # its first frame comes by itself
@@ -443,7 +448,7 @@ class SimulatorDesk(Desk):
         self._layers = frozenset(name for name in names if name in LAYERS)
         if self._player is not None:
             self._player.view.layers = self._layers
-            self.show_frame()
+            self._show()
         self.session.tell("simulator.layers", sorted(self._layers))
 
     @command
@@ -451,7 +456,7 @@ class SimulatorDesk(Desk):
         """Choose the camera images that are sent, by their names in the description."""
         self._cameras.choose(frozenset(names[:MOST_IMAGES]))
         if self._player is not None:
-            self.show_frame()
+            self._show()
         self.session.tell("simulator.cameras", sorted(self._cameras.chosen))
 
     @command
@@ -464,7 +469,7 @@ class SimulatorDesk(Desk):
         self._predictor = chosen
         if self._player is not None:
             self._player.view.predictor = chosen
-            self.show_frame()
+            self._show()
         self.session.tell("simulator.predictor", name)
 
     def _view(self) -> StageView:
