@@ -2,9 +2,11 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from crowdbot.cli import main
+from crowdbot.data import load
 
 TRACKERS = ["--tracker", "global-nearest-neighbor", "interacting-multiple-model"]
 
@@ -129,4 +131,60 @@ def test_five_scenes_are_one_command(capsys):
     assert all(f"scene {k} " in shown for k in range(1, 6))
     assert shown.count("mota") == 5
     assert main(["track", "--scenes", "--json"]) == 2
-    assert "--scenes has no --plot, --trial, --json or --statistics" in capsys.readouterr().err
+    assert "--scenes has no --json; track the scenes one by one for it" in capsys.readouterr().err
+
+
+def test_tracks_are_a_recording_for_the_other_commands(tmp_path, capsys):
+    folder = tmp_path / "found"
+    assert main(["track", "crossing-flows", "--duration", "9", "--out", str(folder)]) == 0
+    files = [folder / name for name in ("tracks.csv", "scores.json", "tracks.png")]
+    assert capsys.readouterr().out.splitlines()[-3:] == [str(file) for file in files]
+    scores = json.loads(files[1].read_text())
+    assert scores["scores"]["global-nearest-neighbor"]["mota"]["value"] > 0.8
+    assert files[2].stat().st_size > 20_000
+    tracks = load(files[0])
+    assert len(np.unique(tracks.id)) > 5
+    assert np.abs(np.diff(np.unique(tracks.time)) - 0.1).max() < 1e-6
+    assert main(["predict", "--data", str(files[0]), "--protocol", "all", "--json"]) == 0
+    errors = json.loads(capsys.readouterr().out)
+    assert errors["results"][0]["total"]["windows"] > 10
+
+
+def test_each_tracker_and_run_has_a_file_of_its_own(tmp_path, capsys):
+    words = ["track", "crossing-flows", "--duration", "3", "--starts", "2", *TRACKERS, "--out", str(tmp_path), "--json"]
+    assert main(words) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads((tmp_path / "scores.json").read_text())
+    names = sorted(f"tracks-{name}-seed-{seed}.csv" for name in TRACKERS[1:] for seed in (1, 2))
+    assert sorted(file.name for file in tmp_path.glob("*.csv")) == names
+    tables = [(tmp_path / name).read_text() for name in names]
+    assert len(set(tables)) == 4
+    assert main([*words[:4], *TRACKERS[:2], "--seed", "2", "--out", str(tmp_path / "second")]) == 0
+    assert (tmp_path / "second/tracks.csv").read_text() == tables[names.index(f"tracks-{TRACKERS[1]}-seed-2.csv")]
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["crossing-flows", "--start", "3"], "--start is for --video"),
+        (["crossing-flows", "--steps", "4"], "--steps is for --video"),
+        (["crossing-flows", "--truth", "people.csv"], "--truth is for --video"),
+        (["crossing-flows", "--statistics", "--out", "x"], "--out is for tracks; --statistics track nobody"),
+        (["crossing-flows", "--statistics", "--predictor", "kalman"], "--predictor is for tracks"),
+        (["--scenes", "--out", "x"], "--scenes has no --out; track the scenes one by one for it"),
+        (["--video", "film.avi", "--seed", "0"], "--seed is for scans, not for --video"),
+        (["--video", "film.avi", "--no-map"], "--no-map is for scans, not for --video"),
+        (["scans.bag", "--starts", "2"], "--starts, --seed and --trial are for trials; recorded scans are one run"),
+    ],
+)
+def test_no_option_is_ignored(words, text, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scans.bag").touch()
+    assert main(["track", *words]) == 2
+    assert text in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["scans.bag"]
+
+
+def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main(["track", "crossing-flows", "--duration", "1", "--out", str(tmp_path / "file")]) == 2
+    assert f"cannot write {tmp_path}/file" in capsys.readouterr().err

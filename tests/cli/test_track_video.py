@@ -92,6 +92,8 @@ def test_people_of_a_video_are_tracked_and_predicted_in_metres(folder, capsys):
         rows = list(csv.DictReader(lines))
     assert float(rows[-1]["x"]) == pytest.approx(6.0, abs=0.3)
     assert float(rows[-1]["vy"]) == pytest.approx(0.8, abs=0.3)
+    assert json.loads((folder / "found" / "scores.json").read_text()) == document
+    assert (folder / "found" / "tracks.png").read_bytes() == plot.read_bytes()
     with (folder / "found" / "forecasts.csv").open() as lines:
         ahead = [row for row in csv.DictReader(lines) if float(row["time"]) == 2.9]
     assert [float(row["ahead"]) for row in ahead] == [0.4, 0.8, 1.2, 1.6]

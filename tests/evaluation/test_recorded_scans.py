@@ -138,6 +138,21 @@ def test_a_tracker_begins_again_after_a_gap():
     assert whole.detections == 2 * once.detections + first.detections
 
 
+def test_identities_of_a_tracker_that_begins_again_are_new():
+    ids = []
+    rows = [row._replace(people=None) for row in _timed([0.0, 0.1, 0.2, 0.3, 9.0, 9.1, 9.2, 9.3])]
+    trackers = {"follow": GlobalNearestNeighbor()}
+    scores = score_positions(
+        rows, {"find": LidarClusters()}, trackers, note=lambda label, tracks: ids.append((label, tracks.ids.tolist()))
+    )
+    assert [label for label, _ in ids] == ["find, follow"] * 8
+    assert len(ids[3][1]) == 3
+    assert not set(ids[3][1]) & set(ids[7][1])
+    assert math.isnan(scores["find"].false_rate)
+    with pytest.raises(DataError, match="no scan has annotated people"):
+        score_positions(rows, {"find": LidarClusters()}, trackers)
+
+
 def _timed(times):
     lidar, place = Lidar2D(rays=360), Pose.of((0.0, 0.0), 0.0)
     return [

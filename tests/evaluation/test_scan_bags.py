@@ -8,6 +8,7 @@ import pytest
 
 from crowdbot.cli import main
 from crowdbot.core import DataError, InputError, Pose, Scene
+from crowdbot.data import load
 from crowdbot.evaluation import read_scan_bag, score_detections
 from crowdbot.perception import LidarClusters
 from crowdbot.sensors import Lidar2D
@@ -85,6 +86,30 @@ def test_every_position_is_false_where_nobody_is(tmp_path, capsys):
     scores = json.loads(capsys.readouterr().out)["scores"]
     assert scores["lidar-clusters"]["false_rate"] == 1.5
     assert scores["lidar-clusters, global-nearest-neighbor"]["recall"] is None
+
+
+def test_tracks_of_a_bag_without_labels_are_a_recording(tmp_path, capsys):
+    file = write_bag(tmp_path / "own.bag", labelled=False)
+    assert main(["track", str(file)]) == 2
+    assert "for tracks without scores, --out DIR" in capsys.readouterr().err
+    assert main(["track", str(file), "--out", str(tmp_path / "found")]) == 0
+    tracker = "lidar-clusters, global-nearest-neighbor"
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0] == f"own.bag: 10 scans without labelled people, 3 tracks of {tracker}; no scores"
+    assert shown[1:] == [str(tmp_path / "found" / name) for name in ("tracks.csv", "scores.json")]
+    document = json.loads((tmp_path / "found/scores.json").read_text())
+    assert document == {"source": "own.bag", "people": 0, "scores": {}, "tracks": {tracker: 3}}
+    tracks = load(tmp_path / "found/tracks.csv")
+    assert sorted(tracks.x[tracks.frame == tracks.frame.max()]) == pytest.approx([1.0, 2.9, 3.55], abs=0.1)
+    labelled = write_bag(tmp_path / "legs.bag")
+    assert main(["track", str(labelled), "--out", str(tmp_path / "scored"), "--duration", "0.5", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document == json.loads((tmp_path / "scored/scores.json").read_text())
+    assert document["people"] == 10
+    times = {line.split(",")[1] for line in (tmp_path / "scored/tracks.csv").read_text().splitlines()[1:]}
+    assert max(times) == "100.400"
+    assert main(["track", str(tmp_path), "--out", str(tmp_path / "both")]) == 2
+    assert "has several bags, whose tracks would mix; give one bag" in capsys.readouterr().err
 
 
 def test_ranges_beside_the_limits_are_unknown_or_no_returns(tmp_path):

@@ -261,6 +261,32 @@ class TestDesk:
         importlib.import_module(f"crowdbot.cli.{name}").arguments(parser)
         assert parser.parse_args(rest)
 
+    @pytest.mark.parametrize(
+        ("values", "words"),
+        [
+            ({"starts": 3, "duration": 6, "by": "distance", "no_map": True, "set": "max_range=8"},
+             "crossing-flows --detector lidar-clusters --tracker global-nearest-neighbor --set=max_range=8"
+             " --duration=6 --by=distance --starts=3 --no-map"),
+            ({"source": "lab.bag", "sensor": "/rear_scan", "match_scans": True, "nobody": True,
+              "detector": ["lidar-clusters", "scan-network"], "tracker": ["moving-people"]},
+             "lab.bag --detector lidar-clusters scan-network --tracker moving-people --sensor=/rear_scan"
+             " --match-scans --nobody"),
+        ],
+    )  # fmt: skip
+    def test_people_are_tracked_in_trials_and_recorded_scans(self, session, call, values, words):
+        for name in ("lab.bag", "drow.csv", "drow.wp", "plain.csv", "lcas/1.pcd", "lcas/2.pcd"):
+            session.workspace.writable(name).touch()
+        (form,) = (form for form in call("forms") if form["kind"] == "track")
+        choices = next(row["choices"] for row in form["rows"] if row["name"] == "source")
+        assert {"lab.bag", "drow.csv", "lcas", "frontal"} <= set(choices)
+        assert not {"plain.csv", "drow.wp"} & set(choices)
+        whole = f"crowdbot track {words} --out tracks/mine"
+        assert call("words", kind="track", values={**values, "name": "mine"}) == whole
+        parser = CommandParser()
+        importlib.import_module("crowdbot.cli.track").arguments(parser)
+        options = parser.parse_args(shlex.split(whole)[2:])
+        assert (options.match_scans, options.no_map) == (values.get("match_scans", False), values.get("no_map", False))
+
     def test_a_trial_is_made_from_a_folder_of_one_file_a_person(self, session, call, monkeypatch):
         for person in (1, 2):
             rows = "".join(f"{0.4 * k:.1f},{100 * (k if person > 1 else 20 - k) * 0.5},{person}\n" for k in range(20))
@@ -279,6 +305,9 @@ class TestDesk:
             ("logs", {"data": ["example:bottleneck"], "goal": "here"}, "expected two numbers, x and y"),
             ("measure", {"data": ["example:bottleneck"], "area": "0 0 4 0"}, "expected corners, an x and a y for each"),
             ("measure", {"data": ["example:bottleneck"], "line": "0 0 nan 1"}, "expected four numbers, x1 y1 x2 y2"),
+            ("track", {"source": "/etc/scans.bag"}, "is not a value of this setting"),
+            ("track", {"set": "file=/etc/net.onnx"}, "is outside the folder of the app"),
+            ("track", {"tracker": []}, "Trackers: choose at least one"),
             ("logs", {"data": ["example:bottleneck"], "fps": -1}, "expected a number from 0"),
             ("real", {"data": "example:bottleneck", "homography": "/etc/passwd"}, "is not a value of this setting"),
             ("train", {"data": ["example:bottleneck"], "columns": "--out=x"}, "columns: unknown '--out'"),

@@ -5,6 +5,8 @@ import json
 import pytest
 from playwright.sync_api import expect
 
+from crowdbot.data import load
+
 pytestmark = pytest.mark.live
 
 TAB = "#tab=jobs"
@@ -59,6 +61,23 @@ def test_people_of_a_recording_are_measured_at_a_line(page, app):
     page.get_by_role("link", name="measurements.json").wait_for()
     (recording,) = json.loads((app.folder / "measurements/door/measurements.json").read_text())["recordings"]
     assert recording["figures"]["crossings"] > 0
+
+
+def test_tracks_of_a_trial_are_a_recording_for_the_other_forms(page, app):
+    page.get_by_role("button", name="Track people").click()
+    form = page.get_by_role("form", name="Track people")
+    form.get_by_label("Duration").fill("3")
+    form.get_by_label("Name of the results").fill("seen")
+    form.get_by_role("button", name="Start").click()
+    page.locator(".job.done").wait_for(timeout=300_000)
+    page.get_by_role("button", name="Results seen").click()
+    for name in ("tracks.csv", "scores.json", "tracks.png"):
+        page.get_by_role("link", name=name).wait_for()
+    assert len(load(app.folder / "tracks/seen/tracks.csv")) > 20
+    page.get_by_role("dialog").get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Measure people").click()
+    recordings = page.get_by_role("form", name="Measure people").get_by_label("Recordings")
+    recordings.select_option("tracks/seen/tracks.csv")
 
 
 def test_what_was_typed_stays_while_other_forms_and_tabs_are_looked_at(page):

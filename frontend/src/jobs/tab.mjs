@@ -47,6 +47,14 @@ class JobsTab {
     this.choose(this.kind ?? this.app.address.get("job") ?? forms[0].kind);
   }
 
+  /** Fetches the forms after a job has ended, since its results are choices of other forms; a form in use stays as it is. */
+  async renew() {
+    const forms = await this.call("forms");
+    if (!forms) return;
+    this.forms = forms;
+    if (!this.form.contains(document.activeElement)) this.choose(this.kind);
+  }
+
   choose(kind) {
     const form = this.forms.find((one) => one.kind === kind) ?? this.forms[0];
     if (this.made) this.typed[this.kind] = this.made.changed();
@@ -75,7 +83,10 @@ class JobsTab {
   }
 
   take(state) {
+    const ended = (jobs) => jobs.filter((one) => one.state === "done").length;
+    const renewed = this.forms && ended(state.jobs) !== ended(this.state.jobs);
     this.state = state;
+    if (renewed) this.renew();
     const actions = {
       cancel: (job) => this.call("cancel", { number: job.number }),
       again: (job) => this.call("again", { number: job.number }),

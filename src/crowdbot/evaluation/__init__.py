@@ -123,6 +123,7 @@ if TYPE_CHECKING:
     from .tracking.scan_statistics import scan_statistics as scan_statistics
     from .tracking.strata import STRATA as STRATA
     from .tracking.strata import estimate_strata as estimate_strata
+    from .tracking.track_files import write_tracks as write_tracks
     from .tracking.track_plot import plot_tracks as plot_tracks
     from .tracking.tracking_run import TrackingRun as TrackingRun
     from .tracking.tracking_run import estimate_scores as estimate_scores

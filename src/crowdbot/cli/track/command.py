@@ -14,12 +14,14 @@ from crowdbot.cli.recordings import check_no_file_options
 
 from .annotated_scans import is_annotated, read_annotated, score_annotated
 from .reading_logs import add_runs, reading_logs
+from .results_folder import plots, write_results
 from .tracker_choice import add_choice, chosen_detectors, chosen_trackers
 from .video import add_video, track_from_video
 
 if TYPE_CHECKING:
     from crowdbot.cli.parser import CommandParser
     from crowdbot.evaluation import Estimate, ReadingLog, TrackingRun
+    from crowdbot.perception import Tracks
 
     Table = dict[str, dict[str, Estimate]]
 
@@ -115,6 +117,7 @@ def arguments(parser: CommandParser) -> None:
     add("--nobody", action="store_true", help="each position is false: nobody is in the bag")
     add("--match-scans", action="store_true", help="estimate the motion of the scanner of a recording")
     add("--no-map", action="store_true", help="do not tell the detector the walls of the stage")
+    add("--out", type=Path, metavar="DIR", help="folder for tracks.csv, scores.json and tracks.png")
     add("--plot", type=Path, metavar="FILE", help="PNG of the tracks of the first run and tracker")
     add_video(parser)
     add_json(parser)
@@ -129,8 +132,10 @@ def main(options: argparse.Namespace) -> int:
     if (options.video is not None) + (options.source is not None) + options.scenes != 1:
         raise InputError("give a SOURCE, --scenes or --video, and only one of them")
     if options.video is not None:
+        _refuse(options, OF_SCANS, "--{} is for scans, not for --video")
         return track_from_video(options)
     check_no_file_options(options, "--video with --truth")
+    _refuse(options, OF_VIDEO, "--{} is for --video")
     options.reach = options.reach or REACH
     if options.starts < 1:
         raise InputError(f"--starts {options.starts} must be at least 1")
@@ -139,13 +144,11 @@ def main(options: argparse.Namespace) -> int:
     if options.match_scans and options.statistics:
         raise InputError("--match-scans is for trackers; --statistics do not depend on the motion of the scanner")
     if options.statistics and not options.scenes:
+        _refuse(options, OF_TRACKS, "--{} is for tracks; --statistics track nobody")
         return print_statistics(options)
     if not options.scenes:
         return score_annotated(options) if is_annotated(options.source) else _track_source(options)
-    if options.plot is not None or options.trial or options.json or options.statistics:
-        raise InputError(
-            "--scenes has no --plot, --trial, --json or --statistics; track the scenes one by one for these"
-        )
+    _refuse(options, OF_ONE_SOURCE, "--scenes has no --{}; track the scenes one by one for it")
     for name, (source, trial) in SCENES.items():
         print(f"scene {name}: crowdbot track {source} " + (f"--trial '{trial[0]}'" if trial else ""))
         options.source, options.trial = source, trial
@@ -162,18 +165,35 @@ def _track_source(options: argparse.Namespace) -> int:
     runs, logs = _runs(options)
     tables = _tables(options, runs)
     downstream = score_downstream(options, runs) if options.predictor else {}
-    if options.plot is not None:
-        with explain_write_errors(options.plot):
-            plot_tracks(next(iter(runs.values()))[0], options.plot)
+    summary = _summary(options, logs, tables) | ({"prediction": _prediction(downstream)} if downstream else {})
+    files = []
+    if options.out is not None:
+        tracks: dict[tuple[str, int | None], tuple[Tracks, ...]] = {
+            (label, run.log.seed): run.tracks for label, some in runs.items() for run in some
+        }
+        files = write_results(options.out, tracks, summary)
+    for plot in plots(options):
+        with explain_write_errors(plot):
+            files.append(plot_tracks(next(iter(runs.values()))[0], plot))
     if options.json:
-        print_json(_summary(options, logs, tables) | ({"prediction": _prediction(downstream)} if downstream else {}))
+        print_json(summary)
         return 0
     for part, table in tables.items():
         _print(options, logs, part, table)
     print_downstream(downstream)
-    if options.plot is not None:
-        print(options.plot)
+    for file in files:
+        print(file)
     return 0
+
+
+def _refuse(options: argparse.Namespace, names: tuple[str, ...], sentence: str) -> None:
+    """Raise :class:`InputError` for an option that would be ignored."""
+    from crowdbot.core import InputError
+
+    for name in names:
+        value = getattr(options, name)
+        if not (value is None or value is False or value in ("", []) or (name == "starts" and value == 1)):
+            raise InputError(sentence.format(name.replace("_", "-")))
 
 
 def _prediction(downstream: dict[str, Any]) -> dict[str, Any]:
@@ -273,6 +293,13 @@ SCENES: dict[str, tuple[str, list[str]]] = {
 """Trials of the tables of results, with their parameters."""
 REACH = 0.5
 """Largest distance of a person and the matching track [m], by default."""
+OF_VIDEO = ("camera", "odometry", "start", "steps", "truth")
+OF_SCANS = (
+    "seed", "sensor", "starts", "duration", "trial", "trust", "by", "statistics", "nobody", "match_scans", "no_map",
+)  # fmt: skip
+OF_TRACKS = ("by", "predictor", "out", "plot")
+OF_ONE_SOURCE = ("out", "plot", "trial", "json", "statistics")
+"""Options of a video, of scans, of tracks, and of one source."""
 MOST_COLUMNS = 4
 """Number of trackers up to which all scores are shown, as rows of the table."""
 MAIN_SCORES = ("mota", "motp", "idf1", "hota", "switches", "latency", "kept_through_occlusion")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.cli.output import print_json, print_table, progress
 from crowdbot.cli.recordings import add_file_options, check_no_file_options, check_parts, recording
 
+from .results_folder import plots, write_results
 from .tracker_choice import chosen_detectors, chosen_trackers
 
 if TYPE_CHECKING:
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 
 REACH, FAR = 1.0, 10.0
 """Largest distance of a person and a track [m], and of people who must be found [m], by default."""
+STEPS = 8
+"""Number of rows of a forecast, by default."""
 
 
 def add_video(parser: CommandParser) -> None:
@@ -30,10 +34,9 @@ def add_video(parser: CommandParser) -> None:
         " robot under mount: x, y, z, roll, pitch, yaw")  # fmt: skip
     add("--odometry", type=Path, metavar="FILE", help="CSV of the robot: time, x, y, heading")
     add("--start", type=float, metavar="SECONDS", help="time of the first frame (default: first time of --odometry)")
-    add("--steps", type=int, default=8, metavar="N", help="rows of 0.4 s of a forecast (default: 8)")
+    add("--steps", type=int, metavar="N", help="rows of 0.4 s of a forecast (default: 8)")
     add("--truth", type=Path, metavar="FILE", help="recording of the true people, such as a CSV with id, time, x,"
         " y, on the clock of --odometry (default: no scores)")  # fmt: skip
-    add("--out", type=Path, metavar="DIR", help="folder for tracks.csv and forecasts.csv (default: none)")
     add_file_options(group, agents="all")
 
 
@@ -53,8 +56,9 @@ def track_from_video(options: argparse.Namespace) -> int:
         or len(options.predictor or []) > 1
     ):
         raise InputError("--video takes one detector, tracker, motion model and predictor")
-    if options.steps < 1:
-        raise InputError(f"--steps {options.steps} must be at least 1")
+    steps = STEPS if options.steps is None else options.steps
+    if steps < 1:
+        raise InputError(f"--steps {steps} must be at least 1")
     detector: Any = next(iter(chosen_detectors(options).values()))
     tracker = next(iter(chosen_trackers(options).values()))
     if options.truth is None:
@@ -66,15 +70,9 @@ def track_from_video(options: argparse.Namespace) -> int:
     with progress(options.json) as report:
         run = track_video(
             options.video, read_camera(options.camera), read_odometry(options.odometry), detector, tracker,
-            build_predictor((options.predictor or ["constant-velocity"])[0], None, {}), options.steps, options.start,
+            build_predictor((options.predictor or ["constant-velocity"])[0], None, {}), steps, options.start,
             lambda share: report("track video", share),
         )  # fmt: skip
-    if options.out is not None:
-        with explain_write_errors(options.out):
-            _write(run, options.out)
-    if options.plot is not None:
-        with explain_write_errors(options.plot):
-            plot_video_run(run, options.plot, truth)
     scores = {} if truth is None else run.scores(truth, options.reach or REACH, FAR)
     summary = {
         "video": options.video.name,
@@ -83,14 +81,20 @@ def track_from_video(options: argparse.Namespace) -> int:
         "tracks": len({who for track in run.tracks for who in track.ids.tolist()}),
         "scores": scores,
     }
+    files = []
+    if options.out is not None:
+        files = [*write_results(options.out, {("", None): run.tracks}, summary), _write_forecasts(run, options.out)]
+    for plot in plots(options):
+        with explain_write_errors(plot):
+            files.append(plot_video_run(run, plot, truth))
     if options.json:
         print_json(summary)
     else:
-        _print(options, summary)
+        _print(options, summary, files)
     return 0
 
 
-def _print(options: argparse.Namespace, summary: dict[str, Any]) -> None:
+def _print(options: argparse.Namespace, summary: dict[str, Any], files: Sequence[Path]) -> None:
     print(
         f"{summary['video']}: {summary['frames']} frames, {summary['detections']} detections of"
         f" {options.detector[0]}, {summary['tracks']} tracks"
@@ -101,23 +105,16 @@ def _print(options: argparse.Namespace, summary: dict[str, Any]) -> None:
             f"people up to {FAR:g} m who are in the image and not behind others; reach {options.reach or REACH:g} m;"
         )
         print_table("scores", ("score", "value"), rows, f"{caption} errors in m")
-    for file in (options.plot, None if options.out is None else options.out / "forecasts.csv"):
-        if file is not None:
-            print(file)
+    for file in files:
+        print(file)
 
 
-def _write(run: VideoRun, folder: Path) -> None:
-    """Write tracks and forecasts."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "tracks.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["id", "time", "x", "y", "vx", "vy", "sd_x", "sd_y"])
-        for track in run.tracks:
-            for k, who in enumerate(track.ids.tolist()):
-                spread = [float(track.covariance[k, i, i]) ** 0.5 for i in (0, 1)]
-                values = [*track.position[k], *track.velocity[k], *spread]
-                table.writerow([who, f"{track.time:.3f}", *(f"{value:.3f}" for value in values)])
-    with (folder / "forecasts.csv").open("w", newline="", encoding="utf-8") as file:
+def _write_forecasts(run: VideoRun, folder: Path) -> Path:
+    """Write the forecasts and return the file."""
+    from crowdbot.core import explain_write_errors
+
+    path = folder / "forecasts.csv"
+    with explain_write_errors(path), path.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(["time", "id", "ahead", "x", "y"])
         for forecast in run.forecasts:
@@ -125,3 +122,4 @@ def _write(run: VideoRun, folder: Path) -> None:
                 for a, who in enumerate(forecast.ids.tolist()):
                     place = forecast.position[row, a]
                     table.writerow([f"{forecast.time:.3f}", who, f"{ahead:g}", f"{place[0]:.3f}", f"{place[1]:.3f}"])
+    return path

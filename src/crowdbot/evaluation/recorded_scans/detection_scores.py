@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core import DataError
 from crowdbot.metrics import match_nearest
-from crowdbot.perception import Detector, OdometryState, ScanOdometry, Tracker
+from crowdbot.perception import Detections, Detector, OdometryState, ScanOdometry, Tracker, Tracks
 from crowdbot.sensors import planar_pose
 from crowdbot.typing import Floats
 
@@ -22,7 +22,7 @@ LONGEST_GAP = 1.0
 
 
 class DetectionScores(NamedTuple):
-    """Scores of the positions of a detector or a tracker, at its own threshold; NaN without people or positions.
+    """Scores of the positions of a detector or a tracker, at its own threshold; NaN without people, positions or scans.
 
     Fields:
         precision, recall, f1: of the pairs within reach.
@@ -83,26 +83,37 @@ class _Count:
             self.distance / self.right if self.right else math.nan,
             self.people,
             self.detections,
-            (self.detections - self.right) / self.scans,
+            (self.detections - self.right) / self.scans if self.scans else math.nan,
         )
 
 
 @dataclass
 class _Following:
-    """A tracker behind a detector, with its state."""
+    """A tracker behind a detector, with its state; identities go on after it has begun again."""
 
     tracker: Tracker
     count: _Count
     state: Any = field(init=False)
     time: float = -math.inf
+    first: int = 0
+    used: int = 0
 
     def __post_init__(self) -> None:
         self.state = self.tracker.begin()
 
+    def update(self, found: Detections, time: float) -> Tracks:
+        """Return the tracks after the detections of the next scan."""
+        if not _follows(time, self.time):
+            self.state, self.first = self.tracker.begin(), self.used
+        tracks, self.state = self.tracker.update(found, time, self.state)
+        tracks = replace(tracks, ids=tracks.ids + self.first)
+        self.time, self.used = time, max(self.used, 1 + int(tracks.ids.max(initial=-1)))
+        return tracks
+
 
 def score_positions(
     rows: Iterable[AnnotatedScan], detectors: Mapping[str, Detector], trackers: Mapping[str, Tracker],
-    reach: float = 0.5, odometry: ScanOdometry | None = None,
+    reach: float = 0.5, odometry: ScanOdometry | None = None, note: Callable[[str, Tracks], None] | None = None,
 ) -> dict[str, DetectionScores]:  # fmt: skip
     """Return the scores of each detector, and of each tracker behind each detector, in one pass over the scans.
 
@@ -115,12 +126,13 @@ def score_positions(
         trackers: trackers by name.
         reach: largest distance of a person and a position [m]; 0.5 m as in the work on DROW and FROG.
         odometry: estimates the motion of a planar scanner from the scans.
+        note: called with ``detector, tracker`` and the tracks after each scan; scans may then all be unlabelled.
 
     Returns:
         Scores by ``detector`` and by ``detector, tracker``.
 
     Raises:
-        DataError: no scan is annotated.
+        DataError: no scan is annotated, and no ``note`` is given.
         InputError: a detector does not read such scans.
     """
     counts = {name: _Count(reach) for name in detectors}
@@ -138,14 +150,12 @@ def score_positions(
             if row.people is not None:
                 counts[name].add(found.position, row)
             for label in trackers:
-                one = following[name, label]
-                if not _follows(time, one.time):
-                    one.state = one.tracker.begin()
-                tracks, one.state = one.tracker.update(found, time, one.state)
-                one.time = time
+                tracks = following[name, label].update(found, time)
+                if note is not None:
+                    note(f"{name}, {label}", tracks)
                 if row.people is not None:
-                    one.count.add(tracks.position, row)
-    if not annotated:
+                    following[name, label].count.add(tracks.position, row)
+    if not annotated and note is None:
         raise DataError("no scan has annotated people")
     scores = {}
     for name, count in counts.items():

@@ -29,7 +29,9 @@ MOST_BEAMS, MOST_VALUES = 10_000, 200_000_000
 """Largest number of ranges of a scan, and of all scans."""
 
 
-def read_scan_bag(file: Path | str, topic: str = "", nobody: bool = False) -> list[AnnotatedScan]:
+def read_scan_bag(
+    file: Path | str, topic: str = "", nobody: bool = False, labelled: bool = True
+) -> list[AnnotatedScan]:
     """Return the scans of a bag; the pose is that of the scanner at the origin.
 
     The bags of leg_tracker (``positive_*_extracted.bag`` of https://github.com/angusleigh/leg_tracker) have one message
@@ -43,6 +45,7 @@ def read_scan_bag(file: Path | str, topic: str = "", nobody: bool = False) -> li
         file: the bag, of ROS 1 or ROS 2.
         topic: topic of the scans; default: the first one by name.
         nobody: whether nobody is in the scans of a bag without labels.
+        labelled: whether a bag without labels is refused; otherwise its people are unknown.
 
     Raises:
         DataError: the file is missing or damaged, or it has no such scans or no labels.
@@ -77,8 +80,13 @@ def read_scan_bag(file: Path | str, topic: str = "", nobody: bool = False) -> li
         raise InputError(f"{file} has labelled legs in {LEGS}, so there are people in its scans")
     if nobody:
         return [AnnotatedScan(scan, NOBODY) for scan in rows]
+    if not labels and not labelled:
+        return [AnnotatedScan(scan, None) for scan in rows]
     if not labels:
-        raise DataError(f"{file} has no labelled legs in {LEGS}; if nobody is in its scans, give --nobody")
+        raise DataError(
+            f"{file} has no labelled legs in {LEGS}; if nobody is in its scans, give --nobody; for tracks without"
+            " scores, --out DIR"
+        )
     if len(labels) != len(rows):
         raise DataError(
             f"{file} has {len(rows)} scans in {chosen} and {len(labels)} labels in {LEGS}, one each is needed"

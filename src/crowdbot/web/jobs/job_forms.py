@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from crowdbot import calibration
+from crowdbot import calibration, perception
 from crowdbot.core import InputError, builtin_classes, did_you_mean
+from crowdbot.evaluation import STRATA
 from crowdbot.falsification import CrossEntropy, PlainSampling, Splitting
 from crowdbot.generation import FORMATS, RECIPES
 from crowdbot.measurement import METHODS
@@ -28,6 +29,8 @@ RECORDINGS = (
     ".traj", ".pp", ".fzp", ".gz",
 )  # fmt: skip
 """Endings of files that may be recordings of people."""
+SCANS = (".mcap", ".h5", ".hdf5", ".bag", ".db3")
+"""Endings of files that may be episodes or recorded scans."""
 MOST_RUNS = 1_000_000
 
 
@@ -240,6 +243,46 @@ def _measure_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
     return [*words, *option_words(check_options(values), "all")]
 
 
+def _scans(space: Workspace) -> list[str]:
+    """Return files and folders that may be episodes or recorded scans: also tables of DROW and folders of L-CAS."""
+    files = [file for file in space.files() if not file.startswith(("sessions/", "examples/"))]
+    tables = [file for file in files if file.endswith(".csv") and f"{file[:-3]}wp" in files]
+    clouds = dict.fromkeys(PurePosixPath(file).parent.as_posix() for file in files if file.endswith(".pcd"))
+    return [*(file for file in files if file.endswith(SCANS)), *tables, *clouds]
+
+
+def _track_rows(space: Workspace) -> list[Row]:
+    detectors, trackers = (
+        {"kind": "several", "choices": list(builtin_classes(perception, kind))}
+        for kind in (perception.Detector, perception.Tracker)
+    )
+    return [
+        _choice("source", "Trial, episode or recorded scans", [*_scans(space), *_trials(space)], "crossing-flows"),
+        {"name": "detector", "label": "Detectors", "value": ["lidar-clusters"], **detectors},
+        {**_text("set", "Values of the detector", ""), "note": "such as max_range=8; empty: as they are"},
+        {"name": "tracker", "label": "Trackers", "value": ["global-nearest-neighbor"], **trackers},
+        {**_text("sensor", "Sensor", ""), "note": "ROBOT/SENSOR, or the topic of a bag; empty: the first",
+         "names_files": False},
+        _whole("starts", "Runs of a trial", 1, 1, 1000),
+        {"name": "duration", "label": "Duration", "kind": "number", "value": None, "low": 0, "unit": "s",
+         "note": "empty: all"},
+        {"name": "by", "label": "Scores by", "kind": "choice", "value": "",
+         "choices": [("", "all people together"), *((name, name) for name in STRATA)]},
+        _switch("no_map", "The detector does not know the walls"),
+        _switch("match_scans", "Recorded scans: estimate the motion of the scanner"),
+        _switch("nobody", "Recorded scans: nobody is there"),
+        _text("name", "Name of the results", "first"),
+    ]  # fmt: skip
+
+
+def _track_words(space: Workspace, values: Mapping[str, Any]) -> list[str]:
+    words = ["track", values["source"], "--detector", *values["detector"], "--tracker", *values["tracker"]]
+    words += [f"--set={item}" for item in values["set"].split()]
+    words += [f"--{name}={values[name]}" for name in ("sensor", "duration", "by") if values[name] not in ("", None)]
+    words += [f"--starts={values['starts']}"] if values["starts"] > 1 else []
+    return [*words, *(f"--{name.replace('_', '-')}" for name in ("no_map", "match_scans", "nobody") if values[name])]
+
+
 def _logs_rows(space: Workspace) -> list[Row]:
     name = _text("name", "Name of the results", "first")
     return [_several_recordings(space), *_robot_rows(space), name, *recording_rows(space, "all")]
@@ -341,6 +384,10 @@ FORMS = {
     "measure": JobForm(
         "Measure people", "Density, speed, flow and encounters of people in recordings, as tables and plots.",
         "measurements", _measure_rows, _measure_words,
+    ),
+    "track": JobForm(
+        "Track people", "People in the scans of a trial, an episode or a scanner: tracks as a recording, and scores.",
+        "tracks", _track_rows, _track_words,
     ),
     "logs": JobForm(
         "Measure recordings of robots", "Metrics of recordings of robots among people.",
