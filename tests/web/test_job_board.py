@@ -261,6 +261,17 @@ class TestDesk:
         importlib.import_module(f"crowdbot.cli.{name}").arguments(parser)
         assert parser.parse_args(rest)
 
+    def test_results_are_no_recordings_but_tracks_are(self, session, call):
+        results = ("tracks.csv", "scores.json")
+        for name in (*(f"tracks/seen/{file}" for file in results), "tracks/seen/tracks-2.csv", "walk.json",
+                     "falsifications/f/result.json", "measurements/m/table.csv"):  # fmt: skip
+            session.workspace.writable(name).touch()
+        for form in call("forms"):
+            for row in form["rows"]:
+                if row["name"] == "data":
+                    names = {name for name, _ in row["choices"] if not name.startswith("example:")}
+                    assert names == {"walk.json", "tracks/seen/tracks.csv", "tracks/seen/tracks-2.csv"}
+
     @pytest.mark.parametrize(
         ("values", "words"),
         [

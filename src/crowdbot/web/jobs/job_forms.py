@@ -31,6 +31,8 @@ RECORDINGS = (
 """Endings of files that may be recordings of people."""
 SCANS = (".mcap", ".h5", ".hdf5", ".bag", ".db3")
 """Endings of files that may be episodes or recorded scans."""
+TRACKS = "tracks/"
+"""Folder of the tracks of people that jobs have found."""
 MOST_RUNS = 1_000_000
 
 
@@ -120,14 +122,16 @@ def _trials(space: Workspace) -> list[str]:
 
 
 def _recordings(space: Workspace) -> list[tuple[str, str]]:
-    skipped = ("sessions/", "examples/", "trainings/", "measurements/", "evaluations/", "generated/")
-    names = [file for file in space.files() if file.endswith(RECORDINGS) and not file.startswith(skipped)]
+    skipped = ("sessions/", "examples/", "trainings/", "measurements/", "evaluations/", "generated/", "falsifications/")
+    files = [file for file in space.files() if not file.startswith(skipped)]
+    tracks = [file for file in files if file.startswith(TRACKS) and file.endswith(".csv")]
+    names = [file for file in files if file.endswith(RECORDINGS) and not file.startswith(TRACKS)]
     held = Counter(PurePosixPath(name).parent.as_posix() for name in names)
     folders = [
         (item, f"{item}/ ({count} files as one recording)") for item, count in held.items() if item != "." and count > 1
     ]
     examples = [(f"example:{item}", f"{item} (example)") for item in EXAMPLES]
-    return [*((name, name) for name in names), *folders, *examples]
+    return [*((name, name) for name in (*names, *tracks)), *folders, *examples]
 
 
 def _paths(space: Workspace, names: list[str]) -> list[str]:
@@ -387,7 +391,7 @@ FORMS = {
     ),
     "track": JobForm(
         "Track people", "People in the scans of a trial, an episode or a scanner: tracks as a recording, and scores.",
-        "tracks", _track_rows, _track_words,
+        TRACKS.rstrip("/"), _track_rows, _track_words,
     ),
     "logs": JobForm(
         "Measure recordings of robots", "Metrics of recordings of robots among people.",
