@@ -171,3 +171,22 @@ def test_messages_cover_no_control_in_any_tab(page, width, height):
         for _ in range(3):
             page.get_by_role("button", name="Close message").first.click()
         expect(page.locator(".message")).to_have_count(0)
+
+
+def test_an_error_is_read_and_closed_while_a_dialog_is_open(page):
+    show(page, "prediction")
+    page.get_by_role("button", name="Open…").click()
+    dialog = page.get_by_role("dialog")
+    for name in ("first", "second"):
+        page.evaluate("(file) => crowdbot.openInSimulator({ file })", f"no-such-{name}.mcap")
+    message = page.locator(".message.error")
+    expect(message).to_have_count(2)
+    page.wait_for_function(f"() => ({COVERED})().length === 0")
+    message.first.get_by_role("button", name="Close message").click()  # it takes clicks, so nothing lies above it
+    expect(message).to_have_count(1)
+    expect(message).to_contain_text("no-such-second.mcap")
+    dialog.get_by_role("button", name="Close", exact=True).click()
+    expect(dialog).to_have_count(0)
+    expect(message).to_be_visible()
+    message.get_by_role("button", name="Close message").click()
+    expect(message).to_have_count(0)

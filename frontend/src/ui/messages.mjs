@@ -29,22 +29,31 @@ export async function attempt(action) {
   }
 }
 
-/** Keeps the messages where they cover no control; while there are some, also as controls come and go. */
+/** Keeps the messages where they cover no control; while there are some, also as controls and dialogs come and go. */
 export function placeMessages() {
   let timer = null;
+  const home = messageRegion.parentNode;
+  document.addEventListener("close", () => enter(home), true);
   new MutationObserver(() => {
     if (!messageRegion.children.length) {
       timer = clearInterval(timer);
       return;
     }
     if (!timer) messageRegion.style.right = messageRegion.style.bottom = `${MARGIN}px`;
-    timer ??= setInterval(place, 250);
-    place();
+    timer ??= setInterval(() => place(home), 250);
+    place(home);
   }).observe(messageRegion, { childList: true });
 }
 
+/** Moves the messages into the modal dialog that is open, since the page behind it is covered and takes no click. */
+function enter(home) {
+  const host = [...document.querySelectorAll("dialog[open]")].at(-1) ?? home;
+  if (messageRegion.parentNode !== host) host.append(messageRegion);
+}
+
 /** Puts the messages where they cover least: if they cover something now, from the right below to the left above. */
-function place() {
+function place(home) {
+  enter(home);
   const controls = [...document.querySelectorAll(CONTROLS)]
     .filter((one) => !messageRegion.contains(one) && one.checkVisibility())
     .map((one) => one.getBoundingClientRect());
