@@ -223,9 +223,11 @@ def test_the_virtual_robot_is_where_the_odometry_of_the_real_one_ends():
     memory = OdometryMemory(TRUTH)
     with FakeRobot("idle") as robot:
         session = qi.Session()
-        with Running(trial(300.0), [NaoqiBridge(robot.url), memory]):
+        with Running(trial(300.0), [NaoqiBridge(robot.url), memory]) as running:
             session.connect(robot.url)
             motion = session.service("ALMotion")
+            # The first pose of the odometry is that of the virtual robot, so the real one stands until it has come.
+            wait(lambda: running.run.port.inbox.count.velocities)
             for velocity in ((0.4, 0.0, 0.5), (0.3, -0.2, -0.8), (0.0, 0.3, 0.0), (-0.2, 0.0, 1.0)):
                 motion.move(*velocity)
                 time.sleep(0.7)
