@@ -168,6 +168,7 @@ def test_each_tracker_and_run_has_a_file_of_its_own(tmp_path, capsys):
         (["crossing-flows", "--start", "3"], "--start is for --video"),
         (["crossing-flows", "--steps", "4"], "--steps is for --video"),
         (["crossing-flows", "--truth", "people.csv"], "--truth is for --video"),
+        (["crossing-flows", "--statistics", "--motion", "orca"], "--motion is for tracks; --statistics track nobody"),
         (["crossing-flows", "--statistics", "--out", "x"], "--out is for tracks; --statistics track nobody"),
         (["crossing-flows", "--statistics", "--predictor", "kalman"], "--predictor is for tracks"),
         (["--scenes", "--out", "x"], "--scenes has no --out; track the scenes one by one for it"),
@@ -184,7 +185,12 @@ def test_no_option_is_ignored(words, text, tmp_path, monkeypatch, capsys):
     assert [file.name for file in tmp_path.iterdir()] == ["scans.bag"]
 
 
-def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("option", "place"), [("--out", "file"), ("--out", "file/deep"), ("--plot", "file/deep/tracks.png")]
+)
+def test_a_place_that_cannot_be_written_is_told_before_the_run(option, place, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("crowdbot.cli.track.command._track_source", lambda options: pytest.fail("the run began"))
     (tmp_path / "file").touch()
-    assert main(["track", "crossing-flows", "--duration", "1", "--out", str(tmp_path / "file")]) == 2
-    assert f"cannot write {tmp_path}/file" in capsys.readouterr().err
+    assert main(["track", "crossing-flows", "--duration", "1", option, str(tmp_path / place)]) == 2
+    reason = f"{tmp_path / 'file'} is a file; give a folder"
+    assert capsys.readouterr().err == f"crowdbot: cannot write {tmp_path / place}: {reason}\n"

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 import textwrap
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
+OUTPUTS = ("out", "plot", "to", "write")
+"""Options of results; those with the metavar ``DIR`` are folders."""
 SETTING = "NAME=VALUE"
 """Metavar of options that take one or several settings, such as ``--set``."""
 
@@ -86,6 +90,9 @@ class CommandParser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse words; an option of settings takes the following words with an equals sign, and no argument after them.
 
+        Raises:
+            InputError: a file or folder of results cannot be written.
+
         >>> parser = CommandParser(prog="crowdbot run")
         >>> for name, how in {"trial": {}, "--set": {"action": "append", "metavar": SETTING}}.items():
         ...     _ = parser.add_argument(name, **how)
@@ -102,7 +109,11 @@ class CommandParser(argparse.ArgumentParser):
                 option = ""
             option = word if word in options else option
             words.append(word)
-        return super().parse_known_args(words, namespace)
+        parsed, unknown = super().parse_known_args(words, namespace)
+        for action in self._actions:
+            if action.dest in OUTPUTS and isinstance(path := getattr(parsed, action.dest, None), Path):
+                _check_writable(path, folder=action.metavar == "DIR")
+        return parsed, unknown
 
     def error(self, message: str) -> NoReturn:
         """Print the usage and the message, and exit with status 2."""
@@ -143,6 +154,23 @@ class CommandParser(argparse.ArgumentParser):
             formatter.end_section()
         formatter.add_text(self.epilog)
         return f"{self.format_usage()}\n{formatter.format_help()}"
+
+
+def _check_writable(path: Path, folder: bool) -> None:
+    """Check before long work that a file or folder of results can be written.
+
+    Raises:
+        InputError: a part of the path is a file, the path is one and a folder is asked for, or there is no permission.
+    """
+    from crowdbot.core import InputError
+
+    place = path.absolute()
+    while not os.path.lexists(place):
+        place = place.parent
+    if not place.is_dir() and (folder or place != path.absolute()):
+        raise InputError(f"cannot write {path}: {place} is a file; give a folder")
+    if not os.access(place, os.W_OK) and not place.is_symlink():
+        raise InputError(f"cannot write {path}: no permission to write {place}")
 
 
 def _in_words(message: str) -> str:

@@ -297,7 +297,7 @@ OF_VIDEO = ("camera", "odometry", "start", "steps", "truth")
 OF_SCANS = (
     "seed", "sensor", "starts", "duration", "trial", "trust", "by", "statistics", "nobody", "match_scans", "no_map",
 )  # fmt: skip
-OF_TRACKS = ("by", "predictor", "out", "plot")
+OF_TRACKS = ("tracker", "motion", "by", "predictor", "out", "plot")
 OF_ONE_SOURCE = ("out", "plot", "trial", "json", "statistics")
 """Options of a video, of scans, of tracks, and of one source."""
 MOST_COLUMNS = 4

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 
 STEADY = "constant-velocity"
+TRACKER = "global-nearest-neighbor"
 
 
 def add_choice(parser: argparse.ArgumentParser) -> None:
@@ -21,9 +22,9 @@ def add_choice(parser: argparse.ArgumentParser) -> None:
     add("--detector", nargs="+", metavar="NAME", help="detectors: names from `crowdbot list detectors`, or file.py:Name"
         " (default: lidar-clusters, or cloud-clusters for L-CAS)")  # fmt: skip
     add_settings(parser, "fields of the detector")
-    add("--tracker", nargs="+", default=["global-nearest-neighbor"], metavar="NAME", help="trackers: names from"
-        " `crowdbot list trackers`, or file.py:Name (default: global-nearest-neighbor)")  # fmt: skip
-    add("--motion", nargs="+", default=[STEADY], metavar="NAME", help="motion models of the trackers: predictors or"
+    add("--tracker", nargs="+", default=[], metavar="NAME", help="trackers: names from"
+        f" `crowdbot list trackers`, or file.py:Name (default: {TRACKER})")  # fmt: skip
+    add("--motion", nargs="+", default=[], metavar="NAME", help="motion models of the trackers: predictors or"
         f" crowd models (default: {STEADY})")  # fmt: skip
 
 
@@ -53,9 +54,9 @@ def chosen_trackers(options: argparse.Namespace) -> dict[str, Tracker]:
     from crowdbot.core import InputError, find_class
 
     result: dict[str, Tracker] = {}
-    for name in options.tracker:
+    for name in options.tracker or [TRACKER]:
         tracker = find_class(name, perception, perception.Tracker)()
-        for motion in options.motion:
+        for motion in options.motion or [STEADY]:
             if motion == STEADY:
                 result[name] = tracker
             elif "motion" in {field.name for field in dataclasses.fields(tracker)}:
