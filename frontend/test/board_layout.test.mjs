@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { boardPages, footer, HEIGHT, WIDTH } from "../src/vr/board_layout.mjs";
 import { unpackBones } from "../src/vr/bone_triples.mjs";
-import { experimentScreen } from "../src/vr/screens.mjs";
+import { emptyRoom, experimentScreen, pauseText } from "../src/vr/screens.mjs";
 
 const measure = (text, size) => 0.55 * size * text.length;
 const scale = (name) => ({ name, kind: "scale", text: `How strong is ${name}?`, required: true, steps: [0, 1, 2, 3], low: "none", high: "severe" });
@@ -67,9 +67,23 @@ test("choices and keys are buttons", () => {
 test("a screen is shown between trials only", () => {
   assert.equal(experimentScreen({ open: false }), null);
   assert.equal(experimentScreen({ open: true, phase: "running" }), null);
-  assert.equal(experimentScreen({ open: true, phase: "pause" }).text, "Please wait.");
+  assert.equal(experimentScreen({ open: true, phase: "pause" }, "Paused by the experimenter.").text, "Paused by the experimenter.");
   const screen = { open: true, phase: "screen", index: 3, text: "Hello", questions: [], answers: {} };
   assert.deepEqual(experimentScreen(screen), { key: "screen 3", text: "Hello", questions: [], answers: {}, button: "Continue" });
+});
+
+test("a participant reads why everything stands still", () => {
+  assert.equal(pauseText(null, "guest", "operator"), "Paused by the operator.");
+  assert.equal(pauseText({ kind: "tracking", avatar: "guest" }, "guest", "operator"), "Tracking of your headset was lost.\nPlease wait for the operator.");
+  assert.match(pauseText({ kind: "gone", avatar: "visitor" }, "guest", "experimenter"), /^Another participant has left.\nPlease wait for the experimenter.$/);
+  assert.match(pauseText({ kind: "asked", avatar: "guest" }, "guest", "operator"), /^You asked for a pause./);
+});
+
+test("the room is empty between trials, and not in a pause, after which the trial goes on", () => {
+  for (const phase of ["screen", "done", "aborted"]) assert.ok(emptyRoom({ open: true, phase }), phase);
+  for (const phase of ["pause", "running", "trial", "ready"]) assert.ok(!emptyRoom({ open: true, phase }), phase);
+  assert.ok(!emptyRoom({ open: false, phase: "screen" }));
+  assert.ok(!emptyRoom(null));
 });
 
 test("bones come back from triples", () => {

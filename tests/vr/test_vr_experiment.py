@@ -103,9 +103,11 @@ def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     guest.person.take = lambda data: {"clock": [0.0, 0.0, 0.0]}  # a headset that sleeps
     state = phase(desk, "pause")
     assert state["reason"] == "tracking of guest was lost"
+    until(lambda: vr.state()["pause"] == {"kind": "tracking", "avatar": "guest"})
     del guest.person.take
-    vr.resume()
+    desk.resume()  # by the experiments tab
     assert phase(desk, "running")
+    until(lambda: vr.state()["pause"] is None)
     until(lambda: not any("tracking" in item for item in vr.state()["warnings"]))
     guest.stop(cut=True)
     assert phase(desk, "pause")["reason"] == "guest is gone"
@@ -113,8 +115,14 @@ def test_losses_pause_the_session_and_stops_hold_the_robot(session):
     vr.resume()
     before = again.person.summary()["steps"]
     until(lambda: again.person.summary()["steps"] > before + 3)
+    vr.pause("guest")
+    state = desk.greet()
+    assert (state["phase"], state["reason"]) == ("pause", "guest asked for it")
+    assert vr.state()["pause"] == {"kind": "asked", "avatar": "guest"}
+    vr.resume()
     vr.pause()
-    assert desk.greet()["phase"] == "pause"
+    state = desk.greet()
+    assert (state["phase"], state["reason"], vr.state()["pause"]) == ("pause", "virtual reality", None)
     again.stop()
     desk.abort("the test is over")
     until(lambda: not vr.state()["experiment"])

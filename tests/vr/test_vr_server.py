@@ -117,6 +117,11 @@ def test_two_headsets_silence_and_messages_that_are_none(tmp_path):
             await poses(first, 40, 12, exchange=exchange)
             await window.until(lambda one: "paused since tracking of guest was lost" in one["warnings"])
             assert server.sessions["main"].desk("simulator").run.loop.paused
+            await window.call("simulator.play")
+            await window.until(
+                lambda one: one["pause"] is None and not any("paused" in text for text in one["warnings"])
+            )
+            await window.call("vr.pause")
             await window.call("vr.resume")
             assert not server.sessions["main"].desk("simulator").run.loop.paused
             await first.send_bytes(b"CBF1 nothing")

@@ -183,7 +183,9 @@ def test_a_person_enters_walks_reaches_and_meets_limits(headset, app):
     assert np.hypot(*(after - before)) < 0.02
     call(app, "vr.release_robots")
     call(app, "vr.pause")
-    wait(page, "crowdbotVr.status.state === 'paused' && crowdbotVr.room.said.startsWith('Paused')")
+    wait(page, "crowdbotVr.status.state === 'paused' && crowdbotVr.room.said === 'Paused by the operator.'")
+    call(app, "vr.pause", avatar="guest")
+    wait(page, "crowdbotVr.room.said === 'You asked for a pause.\\nPlease wait for the operator.'")
 
 
 def test_failures_and_the_page_of_the_operator(headset, app, browser, axe):
@@ -203,6 +205,7 @@ def test_failures_and_the_page_of_the_operator(headset, app, browser, axe):
     call(app, "vr.set", settings={"timeout": 8.0, "pause_when_lost": False})
     first.evaluate("delete crowdbotVr.link.send")
     wait(first, "crowdbotVr.link.avatar === 'guest' && !crowdbotVr.link.silent")
+    wait(first, "crowdbotVr.room.said.startsWith('Tracking of your headset was lost.')")
     call(app, "vr.resume")
     wait(first, "crowdbotVr.status.state === 'running' && crowdbotVr.room.said === ''")
 

@@ -19,6 +19,7 @@ export class Crowd {
     this.counts = [0, 0, 0];
     this.capacity = 0;
     this._boneMap = { value: null };
+    this._headless = { value: -1 };
     this._colorMap = { value: null };
     this._stature = meshes[0].arrays.stature[0];
     this._levels = meshes.map((mesh) => this._level(mesh.arrays));
@@ -107,12 +108,17 @@ export class Crowd {
     return Math.max(0, low);
   }
 
-  /** Chooses the level of detail of everybody for a camera; hidden is an id that is not drawn. */
-  choose(camera, height, hidden = null) {
+  /**
+   * Chooses the level of detail of everybody for a camera.
+   * @param {number|null} hidden id of who is not drawn
+   * @param {number|null} headless id of who is drawn without neck and head, since the camera is inside
+   */
+  choose(camera, height, hidden = null, headless = null) {
     this.counts = [0, 0, 0];
     const state = this._state;
     if (!state?.frame) return;
     const { pelvis, ids } = state.frame.arrays;
+    this._headless.value = headless === null ? -1 : ids.indexOf(headless);
     const focal = height / (2 * Math.tan(0.5 * THREE.MathUtils.degToRad(camera.fov)));
     const eye = camera.position;
     const order = [];
@@ -137,6 +143,14 @@ export class Crowd {
     this._shade.geometry.instanceCount = order.length;
     this._shade.material.uniforms.depth.value = this.shadeDepth;
     shade.needsUpdate = true;
+  }
+
+  /** Runs a function that draws everybody with a head. */
+  withHeads(draw) {
+    const { value } = this._headless;
+    this._headless.value = -1;
+    draw();
+    this._headless.value = value;
   }
 
   set shadows(on) {
@@ -175,6 +189,7 @@ export class Crowd {
     (this._rests ??= []).push(map);
     const uniforms = {
       restMap: { value: map }, boneMap: this._boneMap, colorMap: this._colorMap, vertices: { value: vertices },
+      headless: this._headless,
     };
     const mesh = new THREE.Mesh(geometry, drawPeople(new THREE.MeshLambertMaterial({ side: THREE.DoubleSide }), uniforms, true));
     mesh.customDepthMaterial = drawPeople(new THREE.MeshDepthMaterial(), uniforms, false);

@@ -4,6 +4,7 @@ const DECLARATIONS = /* glsl */ `
 uniform highp sampler2D restMap;
 uniform highp sampler2D boneMap;
 uniform float vertices;
+uniform float headless;
 attribute float source;
 attribute vec4 boneIndex;
 attribute vec4 boneWeight;
@@ -15,9 +16,13 @@ attribute float slot;
 uniform sampler2D colorMap;
 varying vec3 vCloth;
 varying vec4 vTint;
+varying float vHead;
 #endif
 vec3 turnBy(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 `;
+
+/** Bones of the neck and the head, which follow each other. */
+const NECK_AND_HEAD = [4, 5];
 
 const SKIN = /* glsl */ `
 int row = int(slot + 0.5);
@@ -54,12 +59,16 @@ export function drawPeople(material, uniforms, color) {
         #ifdef CROWD_COLOR
         vCloth = texelFetch(colorMap, ivec2(int(regionPartGroup.x + 0.5), int(who.w + 0.5)), 0).rgb;
         vTint = texelFetch(boneMap, ivec2(57, row), 0);
+        vHead = 0.0;
+        if (abs(headless - slot) < 0.5) for (int k = 0; k < 4; k++) {
+          if (abs(boneIndex[k] - ${NECK_AND_HEAD[0]}.5) < 0.6) vHead += boneWeight[k];
+        }
         #endif`,
       );
     if (color) {
       shader.fragmentShader = shader.fragmentShader
-        .replace("#include <common>", "#include <common>\nvarying vec3 vCloth;\nvarying vec4 vTint;")
-        .replace("#include <color_fragment>", "diffuseColor.rgb = mix(vCloth, vTint.rgb, vTint.a);");
+        .replace("#include <common>", "#include <common>\nvarying vec3 vCloth;\nvarying vec4 vTint;\nvarying float vHead;")
+        .replace("#include <color_fragment>", "if (vHead > 0.5) discard;\ndiffuseColor.rgb = mix(vCloth, vTint.rgb, vTint.a);");
     }
   };
   material.customProgramCacheKey = () => `crowd${color ? 1 : 0}`;

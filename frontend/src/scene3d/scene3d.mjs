@@ -32,6 +32,7 @@ export class Scene3D {
     this._layers = new Map(OWN_LAYERS.map((one) => [one.name, { ...one }]));
     this._marked = new Map();
     this._frames = this._applied = this._work = 0;
+    this._empty = false;
     this._theme = "light";
     this._build();
     this.setTheme(this._theme);
@@ -228,13 +229,34 @@ export class Scene3D {
     return { renderer: this._renderer, scene: this._scene };
   }
 
-  /** Draws with the camera of a headset whose eyes are at a point; the person with the id `hidden` is not drawn. */
-  renderFrom(camera, eye, hidden = null) {
+  /** Whether only the floor is drawn, without walls, things, people and robots. */
+  get empty() {
+    return this._empty;
+  }
+
+  set empty(value) {
+    if (value === this._empty) return;
+    this._empty = value;
+    this._showLayers();
+  }
+
+  /** Runs a function that draws everybody with a head, as a mirror shows them. */
+  withHeads(draw) {
+    if (this._crowd) this._crowd.withHeads(draw);
+    else draw();
+  }
+
+  /**
+   * Draws with the camera of a headset whose eyes are at a point.
+   * @param {number|null} own id of the person in whose head the camera is
+   * @param {boolean} body whether the body of this person is drawn, without neck and head
+   */
+  renderFrom(camera, eye, own, body) {
     const begin = performance.now();
     this._stage.full = true;
     this._views.camera.position.copy(eye);
     this._views.controls.target.set(eye.x, eye.y, 0);
-    this._crowd?.choose({ position: eye, fov: 90 }, 2000, hidden);
+    this._crowd?.choose({ position: eye, fov: 90 }, 2000, body ? null : own, body ? own : null);
     this._light();
     this._mark();
     this._renderer.info.reset();
@@ -304,7 +326,7 @@ export class Scene3D {
   }
 
   _showLayers() {
-    const shown = (name) => this._layers.get(name)?.visible ?? false;
+    const shown = (name) => !this._empty && (this._layers.get(name)?.visible ?? false);
     for (const name of ["walls", "props", "zones"]) this._stage.parts[name].visible = shown(name);
     this._stage.grid = shown("grid");
     this._robots.group.visible = shown("robots");

@@ -16,9 +16,11 @@ export class Board {
     map.colorSpace = THREE.SRGBColorSpace;
     map.generateMipmaps = true;
     map.anisotropy = 4;
-    this.mesh = new THREE.Mesh(new THREE.PlaneGeometry(METERS, (METERS * HEIGHT) / WIDTH), new THREE.MeshBasicMaterial({ map, fog: false, toneMapped: false }));
+    this.mesh = new THREE.Mesh(new THREE.PlaneGeometry(METERS, (METERS * HEIGHT) / WIDTH), new THREE.MeshBasicMaterial({ map, transparent: true, fog: false, toneMapped: false }));
     this.mesh.visible = false;
+    // It is drawn in front of everything in the room; rays and hands, which are drawn after it, are in front of it.
     this.mesh.renderOrder = 5;
+    this.mesh.onBeforeRender = (renderer) => renderer.clearDepth();
     this.screen = null;
     this.values = {};
     this.boxes = [];

@@ -9,10 +9,10 @@ const CLEAR = new THREE.Color().setRGB(0.5, 0.5, 0.5);
 
 export class Mirror {
   /**
-   * @param {OwnBody} body hides the head of the avatar, except in the mirror
+   * @param {Scene3D} scene draws participants without their heads, except in the mirror
    * @param {THREE.Object3D[]} panels what has no mirror image
    */
-  constructor(body, panels) {
+  constructor(scene, panels) {
     this.group = new THREE.Group();
     this.group.visible = false;
     const glass = new Reflector(new THREE.PlaneGeometry(...SIZE), { textureWidth: 768, textureHeight: 1280, color: CLEAR, clipBias: 0.001, multisample: 4 });
@@ -21,7 +21,7 @@ export class Mirror {
       this.reflections += 1;
       const shown = panels.filter((one) => one.visible);
       for (const one of shown) one.visible = false;
-      body.withHeads(() => reflect.apply(glass, args));
+      scene.withHeads(() => reflect.apply(glass, args));
       for (const one of shown) one.visible = true;
     };
     const frame = new THREE.Mesh(new THREE.BoxGeometry(SIZE[0] + 0.08, SIZE[1] + 0.08, 0.03), new THREE.MeshStandardMaterial({ color: "#6b4a2f", roughness: 0.7 }));

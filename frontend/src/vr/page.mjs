@@ -8,11 +8,10 @@ import { Limits } from "./limits.mjs";
 import { Board } from "./board.mjs";
 import { EYE_FEATURES, readPoses, vibrate } from "./headset_poses.mjs";
 import { Mirror } from "./mirror.mjs";
-import { OwnBody } from "./own_body.mjs";
 import { Pointers } from "./pointers.mjs";
 import { Room } from "./room.mjs";
 import { SceneFeed } from "./scene_feed.mjs";
-import { experimentScreen, stopScreen } from "./screens.mjs";
+import { emptyRoom, experimentScreen, pauseText, stopScreen } from "./screens.mjs";
 
 const FEATURES = { requiredFeatures: ["local-floor"], optionalFeatures: ["hand-tracking", ...EYE_FEATURES] };
 const SLOW = 1.5;
@@ -56,8 +55,7 @@ export class VrPage {
     this.scene.engine.scene.add(this.room.group, this.robotLimits.group);
     this.board = new Board({ draft: (answers) => this._draft(answers), finish: (answers) => this._finish(answers) });
     this.pointers = new Pointers(this.board);
-    this.body = new OwnBody(this.scene.engine);
-    this.mirror = new Mirror(this.body, [this.board.mesh, this.pointers.group]);
+    this.mirror = new Mirror(this.scene, [this.board.mesh, this.pointers.group]);
     this.room.rig.add(this.board.mesh, this.pointers.group, this.mirror.group);
     this._measureDrawing();
   }
@@ -158,6 +156,7 @@ export class VrPage {
     this.link?.close();
     this.link = null;
     this._xr = null;
+    this.scene.empty = false;
     this._offer();
     requestAnimationFrame(() => this._tick());
   }
@@ -195,8 +194,9 @@ export class VrPage {
     this._warn(poses.tracked, seconds);
     this._showBoard(poses, seconds);
     const eye = this.room.camera.getWorldPosition(new THREE.Vector3());
-    this._showBody(eye);
-    this.scene.renderFrom(this.room.camera, eye, this._bodyShown() ? null : this._own());
+    const body = this._bodyShown();
+    if (body && !this.board.shown) this.room.hideHands(); // before the board, the plain hands are drawn in front of it
+    this.scene.renderFrom(this.room.camera, eye, this._own(), body);
     this.work = 1000 * (now() - time) - this._drawing;
     this._finished = true;
     this.pictures += 1;
@@ -213,7 +213,7 @@ export class VrPage {
     else if (cut) this.room.say("The connection is lost.\nStand still or take the headset off.");
     else if (!this.scene.state.frame) this.room.say("Loading the room.");
     else if (this._posing()) this.room.say("Stand upright.\nStretch both arms out to the sides\nand hold still.");
-    else if (!this.experiment?.open && this.status?.state === "paused") this.room.say("Paused by the operator.");
+    else if (!this.experiment?.open && this.status?.state === "paused") this.room.say(this._pauseText("operator"));
     else this.room.say("");
   }
 
@@ -224,22 +224,21 @@ export class VrPage {
     const close = () => {
       this.menu = false;
     };
-    const pause = () => this.connection.call("vr.pause").then(close, (error) => this.board.complain(error.message));
-    this.board.set(this.menu ? stopScreen(pause, close) : experimentScreen(this.experiment), eye, ahead);
+    const pause = () => this.connection.call("vr.pause", { avatar: this.link?.avatar ?? "" }).then(close, (error) => this.board.complain(error.message));
+    this.board.set(this.menu ? stopScreen(pause, close) : experimentScreen(this.experiment, this._pauseText("experimenter")), eye, ahead);
+    this.scene.empty = this.board.shown && !this.menu && !this.state?.mirror && emptyRoom(this.experiment);
     this.mirror.show(Boolean(this.state?.mirror), eye, ahead);
     if (!this.pointers.update(poses, seconds)) return;
     this.menu = true;
     this.connection.call("vr.stop_robots").catch((error) => this.board.complain(error.message));
   }
 
-  _bodyShown() {
-    return Boolean(this.state?.own_body || this.mirror.shown) && this._own() !== null;
+  _pauseText(operator) {
+    return pauseText(this.state?.pause ?? null, this.link?.avatar ?? null, operator);
   }
 
-  _showBody(eye) {
-    const shown = this._bodyShown();
-    this.body.hideHead(shown ? eye : null);
-    if (shown) this.room.hideHands();
+  _bodyShown() {
+    return !this.scene.empty && Boolean(this.state?.own_body || this.mirror.shown) && this._own() !== null;
   }
 
   _posing() {

@@ -63,8 +63,8 @@ export class Pointers {
 function ray() {
   const geometry = new THREE.CylinderGeometry(0.002, 0.004, 1, 8, 1, true).rotateX(-0.5 * Math.PI).translate(0, 0, 0.5);
   const line = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: "#0b62b8", transparent: true, opacity: 0.8, fog: false }));
-  const dot = new THREE.Mesh(new THREE.SphereGeometry(0.012, 12, 8), new THREE.MeshBasicMaterial({ color: "#ff5c00", depthTest: false, fog: false }));
-  dot.renderOrder = 6;
+  const dot = new THREE.Mesh(new THREE.SphereGeometry(0.012, 12, 8), new THREE.MeshBasicMaterial({ color: "#ff5c00", transparent: true, depthTest: false, fog: false }));
+  line.renderOrder = dot.renderOrder = 6; // after the board
   line.visible = dot.visible = false;
   return { line, dot };
 }

@@ -81,7 +81,8 @@ export class Room {
 }
 
 function hand() {
-  const mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.8 }));
+  const mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.8, transparent: true }));
+  mesh.renderOrder = 6; // after the board, which clears the depth
   mesh.visible = false;
   return mesh;
 }

@@ -11,7 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from crowdbot import web
 from crowdbot.bridges import CaptureSet, MotionCapture, parse_binding
@@ -60,6 +60,25 @@ OPENING = 5.0
 LIVE = ("xsens:", "natnet:")
 
 
+@dataclasses.dataclass(frozen=True)
+class PauseCause:
+    """Why a run or session pauses without the operator.
+
+    Fields:
+        kind: ``tracking``: the tracking of a headset was lost; ``gone``: a participant has left; ``asked``: a
+            participant asked for it.
+        avatar: name of the avatar of the participant.
+    """
+
+    kind: Literal["tracking", "gone", "asked"]
+    avatar: str
+
+    def __str__(self) -> str:
+        if self.kind == "tracking":
+            return f"tracking of {self.avatar} was lost"
+        return f"{self.avatar} is gone" if self.kind == "gone" else f"{self.avatar} asked for it"
+
+
 class VrDesk(Desk):
     """The tab for virtual reality: participants, rooms, delays, and pause and stop for everybody.
 
@@ -94,6 +113,7 @@ class VrDesk(Desk):
         self._placed: dict[str, LiveRun] = {}
         self._room_names: dict[str, str] = {}
         self._warnings: set[str] = set()
+        self._pause_cause: PauseCause | None = None
         self._number = 0
         self.address = ""
         """Address of the page of participants; the server sets it."""
@@ -113,13 +133,15 @@ class VrDesk(Desk):
     def state(self) -> dict[str, Any]:
         """Return participants with their latency, settings and rooms."""
         with self._lock:
-            pose = self._pose
+            pose, cause = self._pose, self._pause_cause
+            warnings = {*self._warnings, *source_problems(self._links()), *self._problems()}
             return {
                 "participants": [participant.summary() for participant in self.participants.values()],
                 "settings": dataclasses.asdict(self.settings),
                 "rooms": {name: room.state() for name, room in self.rooms.rooms.items()},
                 "captures": self.capture_states(),
-                "warnings": sorted({*self._warnings, *source_problems(self._links()), *self._problems()}),
+                "warnings": sorted(warnings if cause is None else warnings | {f"paused since {cause}"}),
+                "pause": None if cause is None else dataclasses.asdict(cause),
                 "address": self.address,
                 "mirror": self.mirror,
                 "own_body": self.own_body,
@@ -151,20 +173,28 @@ class VrDesk(Desk):
         self._tell_state()
 
     @web.command
-    def pause(self) -> None:
-        """Pause the run, or the session of the experiment, for everybody; real robots stop at once."""
+    def pause(self, avatar: str = "") -> None:
+        """Pause the run, or the session of the experiment, for everybody; real robots stop at once.
+
+        Args:
+            avatar: the participant who asks for it; empty: the operator.
+        """
         self._hold_links(True)
+        cause = PauseCause("asked", avatar) if avatar in self.participants else None
         experiment = self.experiment
         if experiment is None:
             self.simulator.pause()
         else:
-            experiment.pause("virtual reality")
+            experiment.pause(str(cause or "virtual reality"))
+        with self._lock:
+            self._pause_cause = cause
+        self._tell_state()
 
     @web.command
     def resume(self) -> None:
         """Continue the run or the session."""
         with self._lock:
-            self._warnings = {warning for warning in self._warnings if not warning.startswith("paused")}
+            self._pause_cause = None
         if not self._stop.set:
             self._hold_links(False)
         experiment = self.experiment
@@ -251,7 +281,7 @@ class VrDesk(Desk):
         with self._lock:
             self._warnings.discard(f"tracking of {person.avatar} is lost")
         if moving and (cut or self._in_experiment) and self.settings.pause_when_lost:
-            self._pause_for(f"paused since {person.avatar} is gone")
+            self._pause_for(PauseCause("gone", person.avatar))
         self._tell_state()
 
     def resource(self, path: str, query: dict[str, str]) -> Resource:
@@ -291,6 +321,7 @@ class VrDesk(Desk):
                         self._attach(run, person)
                 self._move_by_captures(run)
                 self._stop_at_limits(run)
+        self._forget_cause()
         for person in people:
             self._pause_if_lost(person)
         if self._stop.set and STOPPED not in self._warnings:  # a robot was near the limits of its room
@@ -344,19 +375,40 @@ class VrDesk(Desk):
                 return
             self._warnings ^= {words}
         if lost and self.settings.pause_when_lost and self._is_moving(person):
-            self._pause_for(f"paused since tracking of {person.avatar} was lost")
+            self._pause_for(PauseCause("tracking", person.avatar))
         self._tell_state()
 
-    def _pause_for(self, reason: str) -> None:
-        with self._lock:
-            self._warnings.add(reason)
+    def _pause_for(self, cause: PauseCause) -> None:
         self._hold_links(True)
+        if self._is_paused():  # the first cause stands
+            return
         with contextlib.suppress(InputError):  # paused already, or ended
             experiment = self.experiment
             if experiment is None:
                 self.simulator.pause()
             else:
-                experiment.pause(reason.removeprefix("paused since "))
+                experiment.pause(str(cause))
+        with self._lock:
+            self._pause_cause = cause
+
+    def _forget_cause(self) -> None:
+        """Forget why the run or session paused once it goes on, whoever continued it."""
+        cause = self._pause_cause
+        if cause is None or self._is_paused():
+            return
+        with self._lock:
+            if self._pause_cause is cause:
+                self._pause_cause = None
+        self._tell_state()
+
+    def _is_paused(self) -> bool:
+        experiment = self.experiment
+        if experiment is not None:
+            return experiment.paused
+        try:
+            return self.simulator.run.loop.paused
+        except InputError:  # no run
+            return False
 
     def _near_limits(self, simulation: Simulation) -> bool:
         self._robot_margin = None
@@ -480,7 +532,8 @@ class VrDesk(Desk):
             trial = with_bodies(trial, self.bodies)
             self._stop = stop
             self._seats = TrialSeats(trial, folder, stop, self._near_limits)
-            self._warnings = {warning for warning in self._warnings if not warning.startswith(("paused", "tracking"))}
+            self._pause_cause = None
+            self._warnings = {warning for warning in self._warnings if not warning.startswith("tracking")}
             for participant in self.participants.values():
                 self._take_seat(self._seats, participant)
             self._seats.capture(self.captures_of(trial, self._seats.avatars))

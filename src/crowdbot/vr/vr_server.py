@@ -74,7 +74,7 @@ HEADSET_COMMANDS = frozenset(
 """Commands of the page of a participant: the picture, answers to the present screen, and what makes it safe."""
 CHANNELS = frozenset(("scene", "trial"))
 STATES = {
-    "vr": ("participants", "settings", "rooms", "mirror", "own_body", "robot_margin", "pose", "warnings"),
+    "vr": ("participants", "settings", "rooms", "mirror", "own_body", "robot_margin", "pose", "warnings", "pause"),
     "simulator": ("status",),
     "experiments": ("open", "phase", "waiting", "index", "text", "questions", "answers"),
 }

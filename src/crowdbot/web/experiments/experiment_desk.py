@@ -213,6 +213,11 @@ class ExperimentDesk(Desk):
         return self._runner is not None and not self._runner.session.over
 
     @property
+    def paused(self) -> bool:
+        """Whether the session that is open waits in a pause."""
+        return self._runner is not None and self._runner.session.phase == "pause"
+
+    @property
     def trials(self) -> tuple[Trial, ...]:
         """The trials of the session that is open."""
         runner = self._runner
