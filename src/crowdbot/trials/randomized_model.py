@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -104,8 +104,3 @@ def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -
                 changed[name] = np.broadcast_to(now, (agents,)).copy()
             changed[name][agent] = value
     return dataclasses.replace(whole, **changed)
-
-
-def names_of(model: CrowdModel) -> Sequence[str]:
-    """Return the names of the parameters of a model that can differ from person to person."""
-    return [row.name for row in parameters(model.model if isinstance(model, RandomizedModel) else model)]

@@ -120,11 +120,6 @@ def decode_observation(values: Mapping[str, Any]) -> Observation:
     )
 
 
-def _decode_tracks(values: Mapping[str, Any]) -> TrackHistory:
-    times, ids, position = (decode_array(values[name]) for name in ("times", "ids", "position"))
-    return TrackHistory(times, ids, position, int(values["length"]))
-
-
 def _limit(value: float | None) -> float:
     return math.inf if value is None else float(value)
 
