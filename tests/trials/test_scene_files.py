@@ -628,6 +628,115 @@ def test_a_mesh_of_gazebo_becomes_walls(tmp_path, ending, place):
     assert any("the <mesh>" in sentence and "in line 6 is left out" in sentence for sentence in lost.left_out)
 
 
+DAE = """<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="0.5"/></asset>
+<library_geometries>{shapes}</library_geometries><library_visual_scenes><visual_scene id="s">{nodes}</visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+SHAPE = """<geometry id="{id}"><mesh><source id="{id}p"><float_array id="{id}a" count="{count}">{points}</float_array>
+<technique_common><accessor source="#{id}a" count="{rows}" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="{id}v"><input semantic="POSITION" source="#{id}p"/></vertices><triangles count="{faces}">
+<input semantic="VERTEX" source="#{id}v" offset="0"/><p>{corners}</p></triangles></mesh></geometry>"""
+
+
+def dae(meshes):
+    """A DAE file in units of 0.5 m; a node has the name of a mesh, with that of its id only the mesh without spaces."""
+    shapes = nodes = ""
+    for k, (name, mesh) in enumerate(meshes.items()):
+        points, corners = 2.0 * mesh.vertices, mesh.faces.ravel()
+        shapes += SHAPE.format(
+            id=f"g{k}", rows=len(points), count=points.size, faces=len(mesh.faces),
+            points=" ".join(map(str, points.ravel())), corners=" ".join(map(str, corners)),
+        )  # fmt: skip
+        named = f'id="n{k}" name="{name}"' if " " in name else f'id="{name}"'
+        nodes += f'<node {named}><node><instance_geometry url="#g{k}"/></node></node>'
+    return DAE.format(shapes=shapes, nodes=nodes).encode()
+
+
+def two_boxes(folder, ending):
+    """Write a mesh of the parts "north wall", from (0, 4) to (2, 5), and "post", from (5, 0) to (6, 1), 2 m high."""
+    import trimesh
+
+    parts = {"north wall": ((2, 1, 2), (1, 4.5, 1)), "post": ((1, 1, 2), (5.5, 0.5, 1))}
+    meshes = {name: trimesh.creation.box(size).apply_translation(at) for name, (size, at) in parts.items()}
+    data = dae(meshes) if ending == "dae" else trimesh.Scene(meshes).export(file_type=ending)
+    (folder / f"hall.{ending}").write_bytes(data.encode() if isinstance(data, str) else data)
+
+
+@pytest.mark.needs("trimesh")
+@pytest.mark.parametrize("ending", ["dae", "obj", "glb"])
+@pytest.mark.parametrize(
+    ("part", "low", "high"),
+    [
+        ("", (0, 0), (6, 5)),
+        ("<submesh><name>north wall</name></submesh>", (0, 4), (2, 5)),
+        ("<submesh><name>post</name><center>false</center></submesh>", (5, 0), (6, 1)),
+        ("<submesh>\n<center>1</center>\n<name> post </name></submesh>", (-0.5, -0.5), (0.5, 0.5)),
+        ("<submesh><name>north wall</name><center>true</center></submesh><scale>2 1 1</scale>", (-2, -0.5), (2, 0.5)),
+    ],
+)
+def test_a_submesh_of_gazebo_is_the_part_of_its_name(tmp_path, ending, part, low, high):
+    two_boxes(tmp_path, ending)
+    world = (
+        "<sdf version='1.7'><world name='w'><model name='m'><static>1</static><pose>0 0 0.7 0 0 0</pose><link name='l'>"
+        f"<collision name='c'><geometry><mesh><uri>hall.{ending}</uri>{part}</mesh></geometry></collision></link>"
+        "</model></world></sdf>"
+    )
+    done = imported(tmp_path, "w.world", world)
+    corners = np.concatenate([np.array(wall.points) for wall in trial_of(done).stage.walls])
+    assert (corners.min(axis=0), corners.max(axis=0)) == (pytest.approx(low, abs=0.01), pytest.approx(high, abs=0.01))
+    assert not any("mesh" in sentence for sentence in done.left_out)
+
+
+@pytest.mark.needs("trimesh")
+@pytest.mark.parametrize(
+    ("ending", "name", "sentence"),
+    [
+        ("dae", "pots", "it has no part 'pots', did you mean 'post'?; its parts: 'north wall', 'post'"),
+        ("obj", "roof", "it has no part 'roof'; its parts: 'north wall', 'post'"),
+        ("glb", "world", "it has no part 'world'; its parts: 'north wall', 'post'"),
+        ("stl", "post", "its parts have no names, so it has no part 'post'; use a dae, obj, glb file"),
+        ("ply", "post", "its parts have no names, so it has no part 'post'; use a dae, obj, glb file"),
+    ],
+)
+def test_a_submesh_that_is_not_in_the_mesh_is_named(tmp_path, ending, name, sentence):
+    two_boxes(tmp_path, ending)
+    mesh = f"<mesh><uri>hall.{ending}</uri><submesh><name>{name}</name></submesh></mesh>"
+    done = imported(tmp_path, "hall.world", GAZEBO.replace("<box><size>4 0.2 2.5</size></box>", mesh))
+    assert not trial_of(done).stage.walls
+    (lost,) = (text for text in done.left_out if "the <mesh> hall." in text)
+    assert f"of the model 'wall' in line 6 is left out: {sentence}; add its outline as <obstacle>" in lost
+
+
+@pytest.mark.parametrize(
+    ("inside", "file", "extent"),
+    [
+        (
+            "<uri>hills.png</uri><size>129 129 10</size><pos>0 0 0</pos>",
+            "hills.png",
+            "129 x 129 m with heights up to 10",
+        ),
+        ("<size>120 80 2.5</size><uri>file://dem.tif</uri>", "file://dem.tif", "120 x 80 m with heights up to 2.5"),
+        ("<uri>model://yard/yard.png</uri>", "model://yard/yard.png", "1 x 1 m with heights up to 1"),
+        ("<use_terrain_paging>1</use_terrain_paging><uri>a.jpg</uri><size>9 9 0</size>", "a.jpg", "9 x 9 m"),
+        ("<uri>b.png</uri><size>30 30 5</size><texture><size>5</size></texture>", "b.png", "30 x 30 m"),
+    ],
+)
+def test_a_heightmap_of_gazebo_says_which_ground_is_lost(tmp_path, inside, file, extent):
+    hills = f"<heightmap>{inside}</heightmap>"
+    done = imported(tmp_path, "hall.world", GAZEBO.replace("<box><size>4 0.2 2.5</size></box>", hills))
+    assert len(trial_of(done).stage.obstacles) == 1
+    (lost,) = (text for text in done.left_out if "<heightmap>" in text)
+    assert f"the <heightmap> {file} of the model 'wall' in line 6 is left out: its ground of {extent}" in lost
+    assert lost.endswith("its steps as <stairs> or <platform>, and what nobody passes as <obstacle>")
+
+
+def test_a_heightmap_with_a_malformed_size_is_refused(tmp_path):
+    hills = "<heightmap><uri>a.png</uri><size>129 129</size></heightmap>"
+    with pytest.raises(TrialError, match="line 6: <heightmap> needs <size> with 3 numbers"):
+        imported(tmp_path, "hall.world", GAZEBO.replace("<box><size>4 0.2 2.5</size></box>", hills))
+
+
 HINGE = "<joint name='hinge' type='revolute'><axis><limit><lower>{}</lower><upper>{}</upper></limit></axis></joint>"
 
 

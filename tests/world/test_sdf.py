@@ -126,6 +126,32 @@ def test_what_is_left_out_is_told():
     assert len([text for text in urdf.warnings if "is left out" in text]) == 4
 
 
+@pytest.mark.needs("trimesh")
+@pytest.mark.parametrize("center", ["", "<center>true</center>"])
+def test_a_submesh_is_one_part_of_the_mesh_also_in_the_robot_folder(tmp_path, center):
+    import trimesh
+
+    scene = trimesh.Scene()
+    for name, size, middle in (("tyre", (0.2, 0.2, 0.04), (0.3, 0.0, 0.0)), ("rim", (0.1, 0.1, 0.1), (0.0, 0.5, 0.0))):
+        scene.add_geometry(trimesh.creation.box(size).apply_translation(middle), node_name=name, geom_name=name)
+    (tmp_path / "parts.obj").write_text(scene.export(file_type="obj"))
+    mesh = f"<mesh><uri>parts.obj</uri><submesh><name>{{}}</name>{center}</submesh></mesh>"
+    base = link("base", "0 0 0 0 0 0", BOX, 10.0)
+    text = model(base, link("left_wheel", "0 0.2 0 0 0 0", mesh.format("tyre")), joint("left"))
+    (tmp_path / "car.sdf").write_text(text)
+    model_of_file = read_urdf(tmp_path / "car.sdf")
+    assert main(["new", "robot", str(tmp_path / "car.sdf"), "--out", str(tmp_path / "car"), "--yes"]) == 0
+    for robot in (model_of_file, read_urdf(tmp_path / "car" / "car.urdf")):
+        for part in (robot.links["left_wheel"].visuals[0], robot.links["left_wheel"].collisions[0]):
+            points = part.shape.points()
+            np.testing.assert_allclose(np.ptp(points, axis=0), [0.2, 0.2, 0.04], atol=1e-9)
+            middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+            np.testing.assert_allclose(middle, [0.0 if center else 0.3, 0.0, 0.0], atol=1e-9)
+    (tmp_path / "car.sdf").write_text(text.replace("<name>tyre</name>", "<name>tire</name>"))
+    remarks = " ".join(read_urdf(tmp_path / "car.sdf").warnings)
+    assert "parts.obj cannot be used: it has no part 'tire', did you mean 'tyre'?; its parts: 'rim', 'tyre'" in remarks
+
+
 @pytest.mark.parametrize("count", sizes(150, 3000))
 def test_damaged_models_are_refused_or_read(count):
     rng = np.random.default_rng(17)

@@ -127,6 +127,7 @@ if TYPE_CHECKING:
     from .stage_appearance import WALL_SURFACES as WALL_SURFACES
     from .stage_appearance import Appearance as Appearance
     from .urdf import RobotModel as RobotModel
+    from .urdf import Submesh as Submesh
     from .urdf import describe as describe
     from .urdf import read_mesh as read_mesh
     from .urdf import read_urdf as read_urdf

@@ -17,7 +17,7 @@ from crowdbot.models import CrowdModel, SocialForce
 from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from crowdbot.typing import Floats
-from crowdbot.world import frame, read_mesh, roll_pitch_yaw
+from crowdbot.world import Submesh, frame, read_mesh, roll_pitch_yaw
 
 from .building import HEIGHTS, outlines
 from .original import ImportedTrial
@@ -80,7 +80,7 @@ class _Reader:
         """The file that is read, the world or an included model."""
         self.states: dict[str, Element] = {}
         """Models of the saved state by name."""
-        self.meshes: dict[tuple[Path, tuple[float, float, float]], Floats] = {}
+        self.meshes: dict[tuple[Path, tuple[float, float, float], Submesh], Floats] = {}
 
     def trial(self, world: Element) -> ImportedTrial:
         """The trial."""
@@ -298,20 +298,20 @@ class _Reader:
             self.scene.note(f"{lost}: the file is not beside the world; copy it there, or {remedy}")
             return
         x, y, z = self._numbers(shape, "scale", 3, negative=True) if shape.each("scale") else (1.0, 1.0, 1.0)
-        if (found, (x, y, z)) not in self.meshes:
+        words = {item.tag: item.stray.strip() for part in shape.each("submesh") for item in part.children}
+        submesh = Submesh(words.get("name", ""), words.get("center") in ("true", "1"))
+        if (found, (x, y, z), submesh) not in self.meshes:
             try:
-                mesh = read_mesh(found, uri, (x, y, z))
+                mesh = read_mesh(found, uri, (x, y, z), submesh=submesh)
             except InputError as error:
                 self.scene.note(f"{lost}: {error}; {remedy}")
                 return
-            self.meshes[found, (x, y, z)] = mesh.vertices[mesh.faces]
-        corners = self.meshes[found, (x, y, z)]
+            self.meshes[found, (x, y, z), submesh] = mesh.vertices[mesh.faces]
+        corners = self.meshes[found, (x, y, z), submesh]
         self.triangles += len(corners)
         if self.triangles > MOST_TRIANGLES:
             self.scene.note(f"{lost}: meshes have more than {MOST_TRIANGLES} triangles in all; {remedy}")
             return
-        if shape.each("submesh"):
-            self.scene.note(f"the <submesh> of the model {name!r} in {self._where(shape)}: the whole mesh is imported")
         rings = outlines(corners @ at[:3, :3].T + at[:3, 3])
         if not rings:
             heights = ", ".join(f"{height:g}" for height in HEIGHTS)
@@ -345,6 +345,9 @@ class _Reader:
             return _prism(outline, 0.0, height) if len(outline) >= 3 else None
         if shape.tag == "plane":
             return None
+        if shape.tag == "heightmap":
+            self._heightmap(name, shape)
+            return None
         file = next((item.stray.strip() for item in shape.each("uri")), "")
         more = f" ({file[-60:]})" if file else ""
         self.scene.note(
@@ -352,6 +355,17 @@ class _Reader:
             " not in the file; add it as <obstacle>"
         )
         return None
+
+    def _heightmap(self, name: str, shape: Element) -> None:
+        """Note how uneven the ground is that becomes level: the ground of a stage has slopes and steps only."""
+        uri = next((item.stray.strip() for item in shape.each("uri")), "")
+        x, y, z = self._numbers(shape, "size", 3) if shape.each("size") else (1.0, 1.0, 1.0)
+        self.scene.note(
+            f"the <heightmap> {uri[-60:]} of the model {name!r} in {self._where(shape)} is left out: its ground of"
+            f" {x:g} x {y:g} m with heights up to {z:g} m is level here, and what stands on it counts by its height"
+            " above 0; add its slopes as <ramp>, its steps as <stairs> or <platform>, and what nobody passes as"
+            " <obstacle>"
+        )
 
     def _number(self, word: str, part: Element) -> float:
         return as_number(word, f"{self._where(part)}: <{part.tag[:40]}>")

@@ -2,7 +2,7 @@
 
 from .folders import robot_folder
 from .inertia import replacement_shape
-from .meshes import read_mesh, with_pieces
+from .meshes import Submesh, read_mesh, with_pieces
 from .mjcf import BaseServo, Mjcf, mjcf
 from .model import JOINT_KINDS, Joint, Link, LinkInertia, LinkShape, Mimic, Motor, Remark, RobotModel
 from .reading import read_urdf
@@ -29,6 +29,7 @@ __all__ = [
     "RobotDocument",
     "RobotModel",
     "Sphere",
+    "Submesh",
     "describe",
     "mjcf",
     "parse_robot_file",

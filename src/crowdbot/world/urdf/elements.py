@@ -12,7 +12,7 @@ from crowdbot.typing import Floats
 
 from .folders import Folders
 from .mesh_files import MeshFiles
-from .meshes import read_mesh, with_pieces
+from .meshes import Submesh, read_mesh, with_pieces
 from .model import Remark
 from .shapes import Mesh
 from .transforms import frame, roll_pitch_yaw
@@ -44,7 +44,7 @@ class UrdfReader:
         self.springs: dict[str, dict[str, float]] = {}
         self.motors: dict[str, str] = {}
         self.missing: dict[str, set[str]] = {}
-        self._read: dict[tuple[str, tuple[float, float, float]], Mesh | str] = {}
+        self._read: dict[tuple[str, tuple[float, float, float], Submesh], Mesh | str] = {}
 
     def say(self, element: Element, sentence: str) -> None:
         """Record an error."""
@@ -147,7 +147,9 @@ class UrdfReader:
         return frame(place, roll_pitch_yaw(*angles))
 
     def mesh(self, element: Element, collision: bool) -> Mesh | str | None:
-        """Return the mesh of <mesh filename scale>, the reason why it is unavailable, or None after an error.
+        """Return the mesh of <mesh>, the reason why it is unavailable, or None after an error.
+
+        The attributes ``submesh`` and ``center`` stand for <submesh> of SDF.
 
         Raises:
             MissingExtra: trimesh is not installed.
@@ -167,21 +169,28 @@ class UrdfReader:
         except InputError as error:  # a path of another computer, for example
             return f"the mesh file {error}"
         factors = (float(scale[0]), float(scale[1]), float(scale[2]))
-        return self._load_trimesh(element, source, path, factors, collision)
+        part = Submesh(element.attributes.get("submesh", "").strip(), element.attributes.get("center") == "true")
+        return self._load_trimesh(element, source, path, factors, part, collision)
 
     def _load_trimesh(
-        self, element: Element, source: str, path: Path | None, scale: tuple[float, float, float], collision: bool
+        self,
+        element: Element,
+        source: str,
+        path: Path | None,
+        scale: tuple[float, float, float],
+        part: Submesh,
+        collision: bool,
     ) -> Mesh | str:
         if path is None:
             package = self.folders.missing_package(source)
             if package:
                 self.missing.setdefault(package, set()).add(source)
             return f"the mesh file {source[:200]} is missing"
-        key = (str(path), scale)
+        key = (str(path), scale, part)
         if key not in self._read:
             try:
                 files = MeshFiles(self.folders, path)
-                self._read[key] = read_mesh(path, source, scale, files)
+                self._read[key] = read_mesh(path, source, scale, files, part)
                 self.files[source] = path
                 self.textures[source] = files.found
                 for sentence in files.remarks:

@@ -7,17 +7,20 @@ import dataclasses
 import hashlib
 import importlib.metadata
 import io
+import json
 import logging
 import os
+import struct
 import warnings
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
 
-from crowdbot.core import InputError, cache_root, import_optional
+from crowdbot.core import InputError, cache_root, did_you_mean, glb_table, import_optional, table_rows
 
 from .mesh_colors import PartColors, join_colors, take_colors
 from .mesh_files import MeshFiles
@@ -35,7 +38,28 @@ Pieces = tuple[ConvexPiece, ...]
 MOST_CACHE_BYTES = 50_000_000
 
 
-def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files: MeshFiles | None = None) -> Mesh:
+class Submesh(NamedTuple):
+    """The part of a mesh file that ``<submesh>`` of SDF names.
+
+    Fields:
+        name: name of a node of a DAE or GLB file, or of an object or group of an OBJ file; empty for the whole file.
+        center: whether the middle of its bounding box becomes the origin.
+    """
+
+    name: str = ""
+    center: bool = False
+
+
+WHOLE = Submesh()
+
+
+def read_mesh(
+    path: Path,
+    source: str,
+    scale: tuple[float, float, float],
+    files: MeshFiles | None = None,
+    submesh: Submesh = WHOLE,
+) -> Mesh:
     """Read a mesh file in metres. With a mirroring scale, triangles keep facing outwards.
 
     Args:
@@ -43,9 +67,11 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files:
         source: the file name in the URDF.
         scale: scale along x, y and z.
         files: finds material files and textures (default: only this file is read).
+        submesh: the part to read (default: the whole file).
 
     Raises:
-        InputError: the format is not supported, or the file is too large, has no triangles or cannot be read.
+        InputError: the format is not supported, the file has no such part, or it is too large, has no triangles or
+            cannot be read.
         MissingExtra: trimesh is not installed.
     """
     kind = path.suffix.lower().lstrip(".")
@@ -55,7 +81,8 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files:
         raise InputError(f"it is larger than {MOST_BYTES} bytes, the maximum; simplify the mesh")
     data = path.read_bytes()
     check_mesh_bytes(data, kind, path.name)
-    trimesh = _load_trimesh(data, kind, scale, files)
+    unit = _unit(data) if kind == "dae" else 1.0
+    trimesh = _load_trimesh(_part(data, kind, submesh.name) if submesh.name else data, kind, unit, scale, files)
     vertices, faces = (
         np.asarray(trimesh.whole.vertices, dtype=np.float64),
         np.asarray(trimesh.whole.faces, dtype=np.int64),
@@ -66,6 +93,9 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float], files:
         raise InputError(f"its points have {vertices.shape[-1]} coordinates, 3 are required")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
+    if submesh.center:
+        corners = vertices[np.unique(faces)]
+        vertices = vertices - 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     colors, uv, textures = join_colors(trimesh.parts)
     if colors is not None and len(colors) != len(faces):
         return Mesh(source, vertices, faces)
@@ -113,7 +143,9 @@ class _Loaded(NamedTuple):
     parts: list[tuple[Any, PartColors]]
 
 
-def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float], files: MeshFiles | None) -> _Loaded:
+def _load_trimesh(
+    data: bytes, kind: str, unit: float, scale: tuple[float, float, float], files: MeshFiles | None
+) -> _Loaded:
     """Return the content of the file as one trimesh, in metres, with its scale, and its parts."""
     trimesh = _trimesh()
     with warnings.catch_warnings():
@@ -131,13 +163,70 @@ def _load_trimesh(data: bytes, kind: str, scale: tuple[float, float, float], fil
             meshes = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
             whole = trimesh.util.concatenate(meshes) if meshes else trimesh.Trimesh()
             _check_faces(whole)
-            whole.apply_scale(_unit(data) if kind == "dae" else 1.0)
+            whole.apply_scale(unit)
             whole.apply_transform(np.diag([*scale, 1.0]))
         except InputError:
             raise
         except Exception as error:  # a broken file causes many kinds of exceptions inside the libraries
             raise InputError(f"it cannot be read as {kind}: {type(error).__name__}: {str(error)[:120]}") from None
     return _Loaded(whole, [(part, looks.get(part.metadata.get("name"), PartColors())) for part in meshes])
+
+
+def _part(data: bytes, kind: str, name: str) -> bytes:
+    """Return a mesh file in which only the shapes of a name are left."""
+    takers = {"dae": _part_of_dae, "obj": _part_of_obj, "glb": _part_of_glb}
+    if kind not in takers:
+        raise InputError(f"its parts have no names, so it has no part {name[:60]!r}; use a {', '.join(takers)} file")
+    kept, names = takers[kind](data, name)
+    if name not in names:
+        few = ", ".join(repr(other[:40]) for other in sorted(names)[:8]) or "no names"
+        raise InputError(f"it has no part {name[:60]!r}{did_you_mean(name, sorted(names))}; its parts: {few}")
+    return kept
+
+
+def _part_of_dae(data: bytes, name: str) -> tuple[bytes, set[str]]:
+    """Return the file and the names of its shapes: those of the nearest node around with a name, as in Gazebo."""
+    try:
+        root = ElementTree.fromstring(data)  # noqa: S314, check_mesh_bytes has rejected entities
+    except ElementTree.ParseError as error:
+        raise InputError(f"it cannot be read as dae: {error}") from None
+    names, waiting = set(), [(root, "")]
+    while waiting:
+        element, around = waiting.pop()
+        for child in list(element):
+            tag = child.tag.rpartition("}")[2]
+            if tag == "instance_geometry":
+                names.add(around)
+                if around != name:
+                    element.remove(child)
+            waiting.append((child, (child.get("name") or child.get("id") or around) if tag == "node" else around))
+    return ElementTree.tostring(root), names
+
+
+def _part_of_obj(data: bytes, name: str) -> tuple[bytes, set[str]]:
+    """Return the file and the names of its objects and groups; points stay, since triangles count them."""
+    kept, names, here = [], set(), ""
+    for line in data.splitlines():
+        word, _, rest = line.strip().partition(b" ")
+        if word in (b"o", b"g"):
+            here = rest.strip().decode("utf-8", "replace")
+        elif word == b"f":
+            names.add(here)
+        if word not in (b"o", b"g", b"f", b"l", b"p") or here == name:
+            kept.append(line)
+    return b"\n".join(kept), names
+
+
+def _part_of_glb(data: bytes, name: str) -> tuple[bytes, set[str]]:
+    """Return the file and the names of its nodes with a mesh."""
+    table, _ = glb_table(data)
+    rows = [(str(node.get("name", "")), node) for node in table_rows(table, "nodes")]
+    names = {label for label, node in rows if "mesh" in node}
+    nodes = [{key: node[key] for key in node if key != "mesh" or label == name} for label, node in rows]
+    text = json.dumps({**table, "nodes": nodes}).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + struct.unpack("<I", data[12:16])[0] :]
+    return b"glTF" + struct.pack("<III", 2, 20 + len(text) + len(rest), len(text)) + b"JSON" + text + rest, names
 
 
 def _check_count(scene: Any) -> None:

@@ -231,6 +231,8 @@ class _Converter:
         elif inner.tag == "mesh":
             row = {"filename": self.text(inner, "uri")}
             row |= {"scale": self.text(inner, "scale")} if self.text(inner, "scale") else {}
+            row |= {"submesh": self.text(inner, "submesh", "name")} if _one(inner, "submesh") else {}
+            row |= {"center": "true"} if self.text(inner, "submesh", "center") in ("true", "1") else {}
             shape = self.element(inner, "mesh", row)
         else:
             self.ignored.append(
