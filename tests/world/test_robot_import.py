@@ -7,7 +7,7 @@ import pytest
 from base_texts import BASES, FOUR, PAIR, base_file, wheels
 
 from crowdbot.cli import main
-from crowdbot.core import InputError, Scene, Twist
+from crowdbot.core import InputError, RobotError, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.world import PhysicsWorld, PlanarWorld, Robot, check_robot, import_robot, read_urdf
 from crowdbot.world.robots.base_kind import recognize_base
@@ -296,6 +296,122 @@ def joint(name, kind, parent, child, at, axis="0 0 1", limit="lower='-1' upper='
         f"<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><origin xyz='{at}'/>"
         f"<axis xyz='{axis}'/>{limits}</joint>"
     )
+
+
+CYLINDER = "<cylinder radius='${radius}' length='0.04'/>"
+LOST = "<mesh filename='package://lost/wheel.stl'/>"
+PLACEHOLDER = ("ixx='0.003' iyy='0.003' izz='0.005'", "ixx='1' iyy='1' izz='1'")
+FOOTPRINT = (
+    "<link name='base_footprint'/><joint name='foot' type='fixed'><parent link='base_footprint'/>"
+    "<child link='base_link'/><origin xyz='0 0 0.02'/></joint></robot>"
+)
+DIAMETER = "<gazebo><plugin filename='libdrive.so' name='d'><wheel_diameter>0.25</wheel_diameter></plugin></gazebo>"
+
+
+def without_wheel_meshes(*changes):
+    text = base_file("skid-steer").replace(CYLINDER, LOST)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+@pytest.mark.parametrize(
+    ("changes", "values", "radius", "source"),
+    [
+        ([], {}, 0.1, "cylinder of its inertia"),
+        ([("name='front_left'", "name='front_left_wheel'")], {}, 0.1, "cylinder of its inertia"),
+        ([PLACEHOLDER, ("</robot>", FOOTPRINT)], {}, 0.12, "height of its axle above base_footprint"),
+        ([("</robot>", FOOTPRINT)], {}, 0.12, "above base_footprint; 0.1 m: cylinder of its inertia"),
+        ([PLACEHOLDER, ("</robot>", f"{DIAMETER}</robot>")], {}, 0.125, "radius of the drive plugin"),
+        ([("</robot>", f"{DIAMETER}</robot>")], {}, 0.125, "radius of the drive plugin; 0.1 m: cylinder of its"),
+        ([PLACEHOLDER], {"front_left", "front_right", "rear_left", "rear_right"}, 0.11, "--set"),
+    ],
+)
+def test_wheels_whose_meshes_are_missing_get_a_radius_from_elsewhere(tmp_path, changes, values, radius, source):
+    (tmp_path / "maker.xacro").write_text(without_wheel_meshes(*changes))
+    made = import_robot(tmp_path / "maker.xacro", "maker", values={f"radius of {name}": str(radius) for name in values})
+    rows = [row for row in made.guesses if row.what.startswith("radius of ")]
+    assert made.kind == "skid-steer"
+    assert len(rows) == 4
+    for row in rows:
+        assert (row.value, row.status) == (f"{radius:.4g} m", "given" if values else "guess")
+        assert source in row.source
+    wheel_rows = [row for row in made.guesses if row.what.startswith("wheel ")]
+    assert [row.value for row in wheel_rows] == [f"{radius:.4g} m"] * 4
+    assert all((row.source.startswith("radius of its shape, a guess")) != bool(values) for row in wheel_rows)
+    assert made.texts["maker.urdf"].count(f'radius="{radius:.9g}"') == 4
+
+
+def test_the_ground_of_other_wheels_gives_a_radius(tmp_path):
+    """Two wheels have a cylinder, and the axles of the others are as high."""
+    text = base_file("skid-steer").replace("</xacro:macro>", "</xacro:macro><xacro:macro name='lost' params='name x y'>"
+        "<link name='${name}'/><joint name='${name}_joint' type='continuous'><parent link='base_link'/>"
+        "<child link='${name}'/><origin xyz='${x} ${y} 0.1'/><axis xyz='0 1 0'/></joint></xacro:macro>", 1)  # fmt: skip
+    more = "<xacro:lost name='wheel_a' x='0' y='0.2'/><xacro:lost name='wheel_b' x='0' y='-0.2'/></robot>"
+    (tmp_path / "maker.xacro").write_text(text.replace("</robot>", more))
+    made = import_robot(tmp_path / "maker.xacro", "maker")
+    rows = {row.what: row for row in made.guesses}
+    assert rows["radius of wheel_a"].value == "0.1 m"
+    assert "height of its axle above the lowest point of front_left" in rows["radius of wheel_a"].source
+    assert sum(row.what.startswith("wheel ") for row in made.guesses) == 6
+
+
+def test_wheels_of_unknown_radius_are_refused_with_the_options(tmp_path):
+    (tmp_path / "maker.xacro").write_text(without_wheel_meshes(PLACEHOLDER))
+    with pytest.raises(RobotError) as caught:
+        import_robot(tmp_path / "maker.xacro", "maker")
+    for part in (
+        "maker.xacro: the meshes of the wheels front_left, front_right, rear_left, rear_right cannot be read",
+        "--package NAME=FOLDER",
+        "--set 'radius of front_left=0.1'",
+        "--base planar",
+    ):
+        assert part in str(caught.value)
+    assert import_robot(tmp_path / "maker.xacro", "maker", kind="planar").kind == "planar"
+
+
+@pytest.mark.parametrize(("kind", "inner"), [("ackermann", 0.8049), ("tricycle", 0.6)])
+@pytest.mark.parametrize("limit", ["lower='0' upper='0'", "lower='0.1' upper='0.1'", ""])
+def test_steering_joints_whose_limits_allow_no_motion_get_the_common_angle(tmp_path, kind, inner, limit):
+    (tmp_path / "maker.xacro").write_text(base_file(kind).replace("lower='-0.5' upper='0.5'", limit))
+    made = import_robot(tmp_path / "maker.xacro", "maker")
+    rows = {row.what: row for row in made.guesses}
+    assert rows["max-steering"].value == "0.6 rad"
+    assert rows["max-steering"].source == "common value; <limit> of the steering joints allows no motion"
+    limits = [row for what, row in rows.items() if what.startswith("limit of ")]
+    assert [row.value for row in limits] == [f"{inner:.4g} rad"] * (2 if kind == "ackermann" else 1)
+    given = "0.1 to 0.1" if "0.1" in limit else "0 to 0"
+    assert {(row.source, row.status) for row in limits} == {(f"max-steering; the file has {given}", "guess")}
+    joints = read_urdf(made.texts["maker.urdf"]).joints
+    turns = [(-joint.lower, joint.upper) for joint in joints.values() if joint.name.endswith("_steer")]
+    assert turns == [pytest.approx((inner, inner), abs=1e-4)] * len(limits)
+
+
+def test_a_car_whose_steering_joints_were_locked_turns_in_the_physics_world(tmp_path):
+    text = base_file("ackermann").replace("lower='-0.5' upper='0.5'", "lower='0' upper='0'")
+    robot = Robot.load(convert(tmp_path, text))
+    scene = Scene.of([[0.0, 0.0]], external=[True], heading=[0.0], radius=robot.radius)
+    world = PhysicsWorld(scene, ORCA(), {0: robot}, 0.05)
+    for _ in range(30):
+        state = world.step({0: Twist(0.3, 0.3)})
+    assert float(state.heading[0, 0]) > 0.2
+
+
+@pytest.mark.parametrize("axis", ["0 1 0", "1 0 0", "0 1 0.2"])
+def test_locked_steering_joints_with_a_level_axis_are_refused(tmp_path, axis):
+    text = base_file("ackermann").replace(
+        "<axis xyz='0 0 1'/><limit lower='-0.5' upper='0.5'", f"<axis xyz='{axis}'/><limit"
+    )
+    (tmp_path / "maker.xacro").write_text(text)
+    with pytest.raises(RobotError) as caught:
+        import_robot(tmp_path / "maker.xacro", "maker")
+    assert "the joint 'front_left_steer' above the wheel 'front_left' cannot steer: its limits are 0 to 0 rad" in str(
+        caught.value
+    )
+    assert "or give --base skid-steer" in str(caught.value)
+    made = import_robot(tmp_path / "maker.xacro", "maker", kind="skid-steer")
+    assert len([row for row in made.guesses if row.what.startswith("wheel ")]) == 4
 
 
 def lifted_hand(travel, fingers):

@@ -38,7 +38,7 @@ def test_wheels_whose_meshes_are_missing_get_the_radius_of_the_plugin(tmp_path: 
     made = import_robot(write_vendor(tmp_path, "delivery"), "r")
     rows = {guess.what: guess for guess in made.guesses}
     assert rows["physics world"].value == "wheels"
-    assert rows["shape of front_left_wheel_link"].value == "cylinder, radius 0.165 m"
+    assert rows["radius of front_left_wheel_link"].value == "0.165 m"
     assert rows["track"].value == "0.58 m"
     assert made.texts["r.urdf"].count('radius="0.165"') == 4
 
@@ -46,7 +46,7 @@ def test_wheels_whose_meshes_are_missing_get_the_radius_of_the_plugin(tmp_path: 
 def test_wheels_at_angles_get_no_shapes(urdf: Path) -> None:
     """The wheels of Pepper have no readable meshes and stand at angles: its base is moved directly."""
     made = import_robot(urdf / "pepper/pepper.urdf", "r")
-    assert not any(guess.what.startswith("shape of Wheel") for guess in made.guesses)
+    assert not any(guess.what.startswith("radius of Wheel") for guess in made.guesses)
     assert 'base="planar"' in made.texts["robot.xml"]
 
 

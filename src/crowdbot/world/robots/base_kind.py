@@ -190,7 +190,7 @@ def _wheel(
 
 def _steering(model: RobotModel, joint: Joint, poses: Mapping[str, Floats]) -> str:
     """Return the joint with a vertical axis and limits above a wheel, or ''."""
-    for above in _above(model, joint):
+    for above in joints_above(model, joint):
         vertical = abs((poses[above.child][:3, :3] @ above.axis)[2]) > 0.8
         if above.size == 1 and above.kind != "prismatic" and vertical:
             return above.name
@@ -206,13 +206,13 @@ def wheel_springs(model: RobotModel, base: BaseKind) -> tuple[str, ...]:
     """
     poses, found = model.poses(), dict[str, None]()
     for wheel in base.wheels:
-        for above in _above(model, model.joints[wheel.joint]):
+        for above in joints_above(model, model.joints[wheel.joint]):
             if above.kind == "prismatic" and abs((poses[above.child][:3, :3] @ above.axis)[2]) > 0.8:
                 found[above.name] = None
     return tuple(found)
 
 
-def _above(model: RobotModel, joint: Joint) -> list[Joint]:
+def joints_above(model: RobotModel, joint: Joint) -> list[Joint]:
     """Return the joints between a joint and the body of the robot, the nearest first.
 
     Joints above the body, as x, y and theta of a simulated base, move the whole robot.
@@ -223,6 +223,11 @@ def _above(model: RobotModel, joint: Joint) -> list[Joint]:
         found.append(parents[name])
         name = parents[name].parent
     return found
+
+
+def is_locked(joint: Joint) -> bool:
+    """Return whether the limits of a turning joint allow no motion."""
+    return joint.kind == "revolute" and joint.lower == joint.upper
 
 
 def _body(model: RobotModel) -> str:
@@ -247,7 +252,7 @@ def _below(model: RobotModel, link: str) -> set[str]:
 def _is_castor(model: RobotModel, joint: Joint) -> bool:
     if any("cast" in name.lower() for name in (joint.name, joint.child)):
         return True
-    free = [item for item in _above(model, joint) if item.kind == "continuous" and not item.motor.kind]
+    free = [item for item in joints_above(model, joint) if item.kind == "continuous" and not item.motor.kind]
     return bool(free) and not joint.motor.kind
 
 
@@ -262,7 +267,7 @@ def _legs(model: RobotModel, points: Mapping[str, Floats], ground: float) -> tup
         if not len(rows) or rows[:, 2].min() > ground + 2.0 * NEAR_GROUND:
             continue
         last = next((joint for joint in model.joints.values() if joint.child == name), None)
-        chain = [] if last is None else [last, *_above(model, last)]
+        chain = [] if last is None else [last, *joints_above(model, last)]
         turning = [joint for joint in chain if joint.kind in ("revolute", "continuous") and joint.mimic is None]
         lifted = any(joint.kind == "prismatic" and joint.upper - joint.lower > LIFT for joint in chain)
         if len(turning) >= 2 and not lifted:

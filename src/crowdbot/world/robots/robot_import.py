@@ -15,6 +15,7 @@ from crowdbot.world.robots.drives.base_drive import (
     SMOOTH,
     curve_limit,
     drive_type,
+    inner_angle,
     mass_attributes,
     middle_angle,
     rollers_of,
@@ -25,7 +26,7 @@ from crowdbot.world.robots.drives.base_drive import (
 from crowdbot.world.robots.drives.skid_slide import GRAVITY
 from crowdbot.world.urdf import RobotDocument, RobotModel, parse_robot_file, read_urdf
 
-from .base_kind import BaseKind, recognize_base, wheel_springs
+from .base_kind import BaseKind, is_locked, joints_above, recognize_base, wheel_springs
 from .controllers import JointLimits, find_controller_files, read_controllers, read_joint_limits
 from .gazebo_tags import SAME, DriveParameters, find_sensors, guess_sensors, read_drive_parameters
 from .guess_table import DERIVED, DOUBTFUL, FILE, GIVEN, GUESS, Guess, GuessTable
@@ -131,8 +132,10 @@ def import_robot(
         add_shapes(table, document.root, model, f"{name}.urdf")
         model = read_urdf(format_xml(copy_elements(document.root, model.name)), colliders="hull")
     parameters, remarks = _parameters(source, document, model, controllers)
-    model = add_wheel_shapes(table, document.root, model, parameters.values.get("radius"), f"{name}.urdf")
+    model = add_wheel_shapes(table, document, model, parameters.values.get("radius"), f"{name}.urdf", kind)
     base = recognize_base(model, parameters.plugins, kind)
+    if not kind:
+        _check_steering(document.place, model, base)
     status = GIVEN if kind else (FILE if base.why.startswith("the plugin") else DERIVED)
     table.rows.insert(0, Guess("kind of base", base.kind, base.why, "--base KIND", status))
     done = _Conversion(
@@ -140,8 +143,9 @@ def import_robot(
     )
     root = _robot_element(done)
     _sensor_elements(done, root, document.root)
-    urdf, copies = _urdf_element(done, document.root)
-    speed = float(root.each("drive")[0].attributes["max-speed"])
+    drive = root.each("drive")[0].attributes
+    urdf, copies = _urdf_element(done, document.root, float(drive.get("max-steering", 0.0)))
+    speed = float(drive["max-speed"])
     remarks += add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), speed, done.urdf)
     table.check_names()
     made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
@@ -150,6 +154,22 @@ def import_robot(
     made.remarks, made.kind, made.mass = (*model.warnings, *remarks), base.kind, done.mass
     made.texts["import.json"] = _record(made, source)
     return made
+
+
+def _check_steering(place: str, model: RobotModel, base: BaseKind) -> None:
+    """Raise an error if wheels that do not steer are on locked joints named after steering, with an axis not vertical.
+
+    SolidWorks exports a joint whose limits were left empty in this way; the wheels of a car would be dragged sideways.
+    """
+    for wheel in base.wheels:
+        for joint in joints_above(model, model.joints[wheel.joint]):
+            if not wheel.steering and is_locked(joint) and "steer" in f"{joint.name} {joint.child}".lower():
+                axis = " ".join(format_number(value) for value in model.poses()[joint.child][:3, :3] @ joint.axis)
+                raise RobotError(
+                    f"{place}: the joint {joint.name!r} above the wheel {wheel.link!r} cannot steer: its limits are"
+                    f" {joint.lower:g} to {joint.upper:g} rad, and its axis is {axis} in the robot, not 0 0 1; correct"
+                    " its <axis> and <limit> in the file, or give --base skid-steer for a robot without steering"
+                )
 
 
 def _record(made: RobotFolder, source: Path) -> str:
@@ -192,7 +212,8 @@ def _robot_element(done: _Conversion) -> Element:
         table.add("footprint", "outline of the visuals", "the file has no colliders", "<footprint> in robot.xml", GUESS)
         root.children.append(Element("footprint", {"radius": format_number(_reach(model))}))
     for wheel in base.wheels:
-        why = "radius of its shape" + _other(done, "radius", wheel.radius)
+        guessed = any(row.what == f"radius of {wheel.link}" and row.status == GUESS for row in table.rows)
+        why = "radius of its shape" + (", a guess" if guessed else "") + _other(done, "radius", wheel.radius)
         radius = table.number(f"wheel {wheel.joint}", wheel.radius, why, "<wheel> in robot.xml", DERIVED, unit="m")
         row = {"joint": wheel.joint, "radius": format_number(radius)}
         row |= {"steering": wheel.steering} if wheel.steering else {}
@@ -373,10 +394,13 @@ def _steering(done: _Conversion) -> tuple[float, str, str]:
     """Return the largest steering angle [rad], with source and status."""
     names = [wheel.steering for wheel in done.base.wheels if wheel.steering]
     angles = [done.joints[name].position for name in names if name in done.joints]
-    angles += [done.model.joints[name].upper for name in names]
+    angles += [done.model.joints[name].upper for name in names if not is_locked(done.model.joints[name])]
     usable = [value for value in angles if value > 0.05]
     middle = middle_angle(done.base, min(usable)) if usable else 0.0
-    return (middle, "<limit> of the steering joints", FILE) if middle else (0.6, "common value", GUESS)
+    if middle:
+        return middle, "<limit> of the steering joints", FILE
+    locked = any(is_locked(done.model.joints[name]) for name in names)
+    return 0.6, "common value" + ("; <limit> of the steering joints allows no motion" if locked else ""), GUESS
 
 
 def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
@@ -398,13 +422,16 @@ def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
         done.table.add("sensors", "none", "no <sensor> in <gazebo> tags", change, DERIVED)
 
 
-def _urdf_element(done: _Conversion, source: Element) -> tuple[Element, dict[str, Path]]:
-    """Return <robot> with links, joints, materials and friction, and the mesh files to copy."""
+def _urdf_element(done: _Conversion, source: Element, steering: float) -> tuple[Element, dict[str, Path]]:
+    """Return <robot> with links, joints, materials and friction, and the mesh files to copy.
+
+    ``steering`` is the maximum steering angle [rad], 0 without steering.
+    """
     model, base = done.model, done.base
     root = copy_elements(source, done.name)
     copies = copy_meshes(root, model)
     _lock_springs(done, root)
-    _free_steering(done.table, root, {wheel.steering for wheel in base.wheels}, done.urdf)
+    _free_steering(done, root, steering)
     done.mass = add_masses(done.table, root, model, done.urdf)
     if abs(base.rear) > 0.005 and base.wheels and base.kind != "planar":
         root.children.append(Element("link", {"name": GROUND_LINK}))
@@ -437,13 +464,20 @@ def _lock_springs(done: _Conversion, root: Element) -> None:
             done.table.add(f"joint {name}", "fixed", source, f"type= of <joint> in {done.urdf}", DERIVED)
 
 
-def _free_steering(table: GuessTable, root: Element, names: set[str], urdf: str) -> None:
-    """Remove <mimic> from steering joints: the two front wheels of a car steer by different angles."""
+def _free_steering(done: _Conversion, root: Element, angle: float) -> None:
+    """Remove <mimic> from steering joints, as two front wheels steer by different angles, and limits without motion."""
+    names = {wheel.steering for wheel in done.base.wheels}
     for joint in root.each("joint"):
-        if joint.attributes.get("name", "") in names and joint.each("mimic"):
+        name = joint.attributes.get("name", "")
+        if name in names and joint.each("mimic"):
             joint.children = [inner for inner in joint.children if inner.tag != "mimic"]
-            what = f"steering {joint.attributes['name']}"
-            table.add(what, "on its own", "both front wheels turn about one centre", f"<mimic> in {urdf}", DERIVED)
+            why = "both front wheels turn about one centre"
+            done.table.add(f"steering {name}", "on its own", why, f"<mimic> in {done.urdf}", DERIVED)
+        if name in names and angle and is_locked(done.model.joints[name]):
+            most, (limit,) = inner_angle(done.base, angle), joint.each("limit")
+            why = f"max-steering; the file has {done.model.joints[name].lower:g} to {done.model.joints[name].upper:g}"
+            limit.attributes |= {"lower": repr(-most), "upper": repr(most)}
+            done.table.add(f"limit of {name}", f"{most:.4g} rad", why, f"<limit> in {done.urdf}", GUESS)
 
 
 def _tire(table: GuessTable, link: str, friction: float, urdf: str) -> float:

@@ -5,17 +5,28 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core import Element
+from crowdbot.core import Element, RobotError
 from crowdbot.typing import Floats
-from crowdbot.world.urdf import Cylinder, Joint, Link, LinkInertia, LinkShape, RobotModel, replacement_shape
+from crowdbot.world.urdf import (
+    Cylinder,
+    Joint,
+    Link,
+    LinkInertia,
+    LinkShape,
+    RobotDocument,
+    RobotModel,
+    replacement_shape,
+)
+from crowdbot.world.urdf.inertia import DENSITY
 from crowdbot.world.urdf.transforms import across
 
 from .base_kind import BaseKind, FoundWheel
+from .gazebo_tags import SAME
 from .guess_table import DERIVED, FILE, GUESS, GuessTable
 from .wheel import resistance, weak_motor
 
@@ -23,6 +34,10 @@ GRAVITY = 9.81
 WHEEL_NAMES = ("wheel", "whl")
 WHEEL_WIDTH = 0.4
 """Width of a guessed wheel by its radius."""
+SMALLEST_WHEEL, LARGEST_WHEEL = 0.005, 2.0
+"""Limits [m] of the radius of a guessed wheel."""
+PAIR_TOLERANCE = 0.02
+"""Largest difference [m] of the places of two wheels at both sides."""
 
 
 def format_number(value: float) -> str:
@@ -153,42 +168,127 @@ def add_shapes(table: GuessTable, root: Element, model: RobotModel, urdf: str) -
 
 
 def add_wheel_shapes(
-    table: GuessTable, root: Element, model: RobotModel, radius: float | None, urdf: str
+    table: GuessTable, document: RobotDocument, model: RobotModel, radius: float | None, urdf: str, kind: str = ""
 ) -> RobotModel:
     """Give wheels whose shapes are missing a cylinder, and return the model with them.
 
-    A wheel is a joint without limits about an axle across the robot, with "wheel" in its name or that of its link. The
-    radius is that of the drive plugin or controller; without it, nothing is added.
+    Such a wheel is a joint without limits about an axle across the robot, with "wheel" in its name or that of its link,
+    or one of a pair of lowest joints. Its radius is, in this order, that of the drive plugin or controller, the height
+    of its axle above the other wheels or a link named after the footprint, or that of a cylinder of its inertia.
 
     Args:
-        table: lists the shapes.
-        root: <robot> of the maker's file, which gets them, too.
+        table: lists the radii.
+        document: the maker's file; <robot> gets the shapes, too.
         model: the robot.
         radius: radius [m] of the wheels that a plugin or controller gives.
         urdf: name of the URDF file of the folder.
+        kind: kind of base if it is given; empty otherwise.
+
+    Raises:
+        RobotError: nothing gives the radius, and the kind of base does not say that no wheels are needed.
     """
-    if radius is None or not 0.005 < radius < 2.0:
-        return model
-    elements, poses = {link.attributes.get("name", ""): link for link in root.each("link")}, model.poses()
-    links = dict(model.links)
-    for joint in model.movable:
-        link, matrix = model.links[joint.child], poses[joint.child]
-        axle = matrix[:3, :3] @ joint.axis
-        if abs(axle[1]) < 0.95 or not _is_named_wheel(joint) or _has_shapes(elements[link.name], model):
+    elements = {link.attributes.get("name", ""): link for link in document.root.each("link")}
+    poses, links, lost = model.poses(), dict(model.links), list[str]()
+    wheels = _named_or_paired(model, poses)
+    bare = [joint for joint in wheels if not _has_shapes(elements[joint.child], model)]
+    floors = _floors(model, poses, [joint for joint in wheels if joint not in bare])
+    for joint in bare:
+        link, what = links[joint.child], f"radius of {joint.child}"
+        rows = [] if radius is None else [(radius, "radius of the drive plugin")]
+        rows += [(float(poses[link.name][2, 3]) - floor, f"height of its axle above {of}") for floor, of in floors]
+        rows += _radius_of_inertia(elements[link.name], link, joint)
+        rows = [(value, source) for value, source in rows if SMALLEST_WHEEL < value < LARGEST_WHEEL]
+        if not rows and what not in table.given:
+            lost.append(link.name)
             continue
+        guess, source = rows[0] if rows else (0.0, "")
+        others = [f"; {value:.4g} m: {why}" for value, why in rows[1:] if abs(value - guess) > SAME * guess]
+        source = f"it has no shape that can be read: {source}{''.join(others)}"
+        size = table.number(what, guess, source, f"<cylinder> in {urdf}", GUESS, unit="m")
         turn = np.eye(4)
         turn[:3, :3] = across(joint.axis)
-        shape = Cylinder(radius, WHEEL_WIDTH * radius)
+        shape = Cylinder(size, WHEEL_WIDTH * size)
         links[link.name] = dataclasses.replace(link, visuals=(), collisions=(LinkShape(shape, turn),))
-        values = {"radius": format_number(radius), "length": format_number(shape.length)}
+        values = {"radius": format_number(size), "length": format_number(shape.length)}
         geometry = Element("geometry", {}, [Element("cylinder", values)])
         place = Element("origin", {"rpy": _angles(turn[:3, :3])})
         element = elements[link.name]
         element.children = [child for child in element.children if child.tag != "collision"]
         element.children.append(Element("collision", {}, [place, geometry]))
-        source = "it has no shape that can be read: radius of the drive plugin"
-        table.add(f"shape of {link.name}", f"cylinder, radius {radius:.4g} m", source, f"<link> in {urdf}", GUESS)
+    if lost and kind not in ("planar", "legged"):
+        raise RobotError(
+            f"{document.place}: the meshes of the wheels {', '.join(lost[:8])} cannot be read, and no drive plugin,"
+            " controller, other wheel, footprint or inertia gives their radius: give the meshes (--package"
+            f" NAME=FOLDER), the radius (--set 'radius of {lost[0]}=0.1', in m), or --base planar to move the base"
+            " directly"
+        )
     return dataclasses.replace(model, links=links)
+
+
+def _named_or_paired(model: RobotModel, poses: Mapping[str, Floats]) -> list[Joint]:
+    """Return the joints without limits about axles across the robot that are wheels by their name or place.
+
+    By its place it is one of two at both sides, with no lower joint of this kind, no joint below it and none but
+    steering and springs above it.
+    """
+    above = {joint.child: joint for joint in model.joints.values()}
+    bearing = {joint.parent for joint in model.movable}
+    across_robot = [
+        joint
+        for joint in model.movable
+        if joint.kind in ("continuous", "revolute")
+        and joint.upper - joint.lower >= 2.0 * math.pi
+        and abs((poses[joint.child][:3, :3] @ joint.axis)[1]) > 0.95
+        and "cast" not in f"{joint.name} {joint.child}".lower()
+    ]
+
+    def is_free(joint: Joint) -> bool:
+        name = joint.parent
+        while name in above:
+            upper = above[name]
+            vertical = abs((poses[upper.child][:3, :3] @ upper.axis)[2]) > 0.8
+            if upper in model.movable and not vertical:
+                return False
+            name = upper.parent
+        return joint.child not in bearing
+
+    places = {joint.name: poses[joint.child][:3, 3] for joint in across_robot if is_free(joint)}
+    low = min((float(place[2]) for place in places.values()), default=0.0) + PAIR_TOLERANCE
+    mirror = np.array([1.0, -1.0, 1.0])
+
+    def is_paired(name: str) -> bool:
+        if name not in places or places[name][2] > low or abs(places[name][1]) < PAIR_TOLERANCE:
+            return False
+        return any(np.abs(place * mirror - places[name]).max() < PAIR_TOLERANCE for place in places.values())
+
+    return [joint for joint in across_robot if _is_named_wheel(joint) or is_paired(joint.name)]
+
+
+def _floors(model: RobotModel, poses: Mapping[str, Floats], wheels: Sequence[Joint]) -> list[tuple[float, str]]:
+    """Return heights [m] of the ground in the root frame, with what they are from."""
+    floors = []
+    for joint in wheels:
+        link = model.links[joint.child]
+        parts = [(poses[link.name] @ part.origin, part.shape.points()) for part in link.collisions or link.visuals]
+        if parts:
+            low = min(float((points @ matrix[2, :3] + matrix[2, 3]).min()) for matrix, points in parts)
+            floors.append((low, f"the lowest point of {link.name}"))
+    low_links = [(float(poses[name][2, 3]), name) for name in model.links if "footprint" in name.lower()]
+    return [*floors[:1], *low_links[:1]]
+
+
+def _radius_of_inertia(element: Element, link: Link, joint: Joint) -> list[tuple[float, str]]:
+    """Return the radius [m] of the cylinder about the axle with the inertia in the file; empty for a placeholder."""
+    if link.inertial is None or not any(inner.each("inertia") for inner in element.each("inertial")):
+        return []
+    mass, moments = link.inertial.mass, np.linalg.eigvalsh(link.inertial.tensor)
+    along = float(joint.axis @ link.inertial.tensor @ joint.axis)
+    radius = math.sqrt(2.0 * along / mass)
+    width = math.sqrt(max(0.0, 6.0 * (float(moments.sum()) - along) / mass - 3.0 * radius**2))
+    volume = math.pi * radius**2 * max(width, 0.01 * radius)
+    if np.ptp(moments) < SAME * moments[2] or width > 2.0 * radius or not 0.1 <= mass / (DENSITY * volume) <= 10.0:
+        return []
+    return [(radius, "cylinder of its inertia")]
 
 
 def _has_shapes(link: Element, model: RobotModel) -> bool:
@@ -204,9 +304,7 @@ def _has_shapes(link: Element, model: RobotModel) -> bool:
 
 
 def _is_named_wheel(joint: Joint) -> bool:
-    names = f"{joint.name} {joint.child}".lower()
-    turns = joint.kind in ("continuous", "revolute") and joint.upper - joint.lower >= 2.0 * math.pi
-    return turns and "cast" not in names and any(word in names for word in WHEEL_NAMES)
+    return any(word in f"{joint.name} {joint.child}".lower() for word in WHEEL_NAMES)
 
 
 def _angles(rotation: Floats) -> str:

@@ -135,6 +135,22 @@ def middle_angle(base: BaseKind, inner: float) -> float:
     return math.atan(1.0 / (1.0 / math.tan(inner) + half))
 
 
+def inner_angle(base: BaseKind, middle: float) -> float:
+    """Return the angle [rad] of the inner steered wheel at a steering angle [rad] of the (virtual central) wheel.
+
+    It is the inverse of :func:`middle_angle`, at most 1.4 rad for a car.
+
+    Args:
+        base: wheels and kind of base.
+        middle: steering angle [rad].
+    """
+    if base.kind == "tricycle":
+        return middle
+    sides = [float(wheel.center[1]) for wheel in base.wheels if wheel.steering]
+    half = 0.5 * (max(sides) - min(sides)) / base.wheelbase if base.wheelbase else 0.0
+    return min(1.4, math.atan2(1.0, 1.0 / math.tan(middle) - half))
+
+
 def tire_friction(model: RobotModel, base: BaseKind) -> float:
     """Return the mean friction coefficient of the driven wheels on the floor, at most that of rubber.
 
