@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -161,6 +163,42 @@ def test_the_order_of_degrees_is_not_taken_on_trust(tmp_path):
     path.write_text("\n".join(f"{frame} {who} {x:.10f} {y:.10f}" for who, frame, x, y in rows))
     (nameless,) = warnings_of(path, fps=10.0)
     assert nameless.endswith("give --units deg, and write a table with x and y exchanged")
+
+
+@pytest.mark.parametrize("header", ["id,time,x,y", "person,t,pos_x,pos_y"])
+@pytest.mark.parametrize(("longitude", "latitude"), [(11.58, 48.14), (-0.12, 51.5), (-58.4, -34.6), (24.9, 60.2)])
+def test_exchanged_degrees_are_named_by_the_speeds(tmp_path, longitude, latitude, header):
+    path = degrees_file(tmp_path / "t.csv", header, steps(longitude, latitude))
+    (warning,) = warnings_of(path, units="deg")
+    x, y = header.split(",")[2:]
+    east, north = (float(text) for text in re.findall(r"([0-9.]+) m ", warning)[:2])
+    cos_x, cos_y = np.cos(np.radians((latitude, longitude)))
+    assert (east, north) == (pytest.approx(9.0 * cos_y, abs=0.3), pytest.approx(9.1 / cos_x, abs=0.4))
+    assert "only exchanged people walk as fast to the east as to the north" in warning
+    assert warning.endswith(f"of latitude (x) and longitude (y), give --columns x={y} y={x}")
+    assert "warning" not in load(path, units="deg", columns={"x": y, "y": x}).note
+
+
+@pytest.mark.parametrize(("longitude", "latitude"), [(11.58, 48.14), (-0.12, 51.5), (-58.4, -34.6)])
+@pytest.mark.parametrize("exchanged", [False, True])
+def test_an_order_of_degrees_that_the_speeds_do_not_decide_is_named(tmp_path, longitude, latitude, exchanged):
+    rows = steps(longitude, latitude, both=False)
+    rows = rows if exchanged else [(who, t, x, y) for who, t, y, x in rows]
+    path = degrees_file(tmp_path / "t.csv", "id,time,x,y", rows)
+    (warning,) = warnings_of(path, units="deg")
+    first = float(warning.split("if x, ")[1].split(",")[0])
+    assert first == pytest.approx(latitude if exchanged else longitude, abs=1e-3)
+    assert "m to the north as read" in warning
+    assert "which the speeds do not decide: if it is, give --columns x=y y=x, if not, give --columns x=x y=y" in warning
+    for columns in ({"x": "x", "y": "y"}, {"x": "y", "y": "x"}):
+        assert "warning" not in load(path, units="deg", columns=columns).note
+    named = degrees_file(tmp_path / "n.csv", "id,time,lat,lon" if exchanged else "id,time,lon,lat", rows)
+    assert "warning" not in load(named).note
+
+
+def test_degrees_near_the_equator_have_no_doubtful_order(tmp_path):
+    path = degrees_file(tmp_path / "t.csv", "id,time,x,y", steps(6.6, 0.4, both=False))
+    assert "warning" not in load(path, units="deg").note
 
 
 def test_degrees_that_cannot_be(tmp_path):

@@ -67,7 +67,9 @@ def assemble(
     columns = columns or FileColumns()
     if units == "deg":
         place, origin = _local_metres(place[0], place[1], name, columns.exchange)
-        note = "; ".join(filter(None, (note, origin)))
+        converted = f"degrees are converted to metres east (x) and north (y) of longitude {origin[0]:.7g}"
+        note = "; ".join(filter(None, (note, f"{converted}, latitude {origin[1]:.7g}")))
+        columns = columns._replace(origin=origin)
     elif PER_METRE[units] != 1.0:
         place = [axis / PER_METRE[units] for axis in place]
         if columns.heights is not None:
@@ -89,8 +91,8 @@ def assemble(
 
 def _local_metres(
     longitude: NDArray[np.float64], latitude: NDArray[np.float64], name: str, exchange: str
-) -> tuple[list[NDArray[np.float64]], str]:
-    """Return metres to the east and north of the middle of all places [degrees], and a note on the origin."""
+) -> tuple[list[NDArray[np.float64]], tuple[float, float]]:
+    """Return metres to the east and north of the middle of all places [degrees], and that origin."""
     for what, values, largest in (("longitude", longitude, 180.0), ("latitude", latitude, 90.0)):
         if np.max(np.abs(values)) > largest:
             wrong = values[np.argmax(np.abs(values))]
@@ -101,10 +103,7 @@ def _local_metres(
     east, north = (0.5 * float(np.min(axis) + np.max(axis)) for axis in (longitude, latitude))
     x = (longitude - east) * METRES_PER_DEGREE * np.cos(np.radians(north))
     y = (latitude - north) * METRES_PER_DEGREE
-    return [
-        x,
-        y,
-    ], f"degrees are converted to metres east (x) and north (y) of longitude {east:.7g}, latitude {north:.7g}"
+    return [x, y], (east, north)
 
 
 def check_units(units: str | None) -> None:

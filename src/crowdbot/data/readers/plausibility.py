@@ -76,6 +76,7 @@ class FileColumns(NamedTuple):
         height: name of the third coordinate; empty if there is none.
         heights: ``[N]`` values of the third coordinate, in the units of x and y.
         x, y: names of the coordinates, if the user can choose the columns by name.
+        origin: x and y [degrees] of the origin if places were converted from degrees.
     """
 
     time: str = ""
@@ -83,6 +84,7 @@ class FileColumns(NamedTuple):
     heights: NDArray[np.float64] | None = None
     x: str = ""
     y: str = ""
+    origin: tuple[float, float] | None = None
 
     @property
     def exchange(self) -> str:
@@ -120,7 +122,7 @@ def _check(tracks: Trajectories, options: ReadOptions, columns: FileColumns) -> 
             )
     odd = stamps or _degree_warning(tracks, options, columns) or _speed_warning(tracks, options, speed)
     steps = ("", "") if odd else (_jump_warning(tracks), _pause_warning(tracks))
-    sentences = (odd, _height_warning(tracks, columns), *steps)
+    sentences = (odd, _order_warning(tracks, options, columns), _height_warning(tracks, columns), *steps)
     warnings = [f"warning: {sentence}" for sentence in sentences if sentence]
     new = [warning for warning in warnings if warning not in tracks.note]
     return dataclasses.replace(tracks, note="; ".join(filter(None, (tracks.note, *new)))) if new else tracks
@@ -159,7 +161,9 @@ def _degree_warning(tracks: Trajectories, options: ReadOptions, columns: FileCol
     walks = SLOW_WALK <= fast * METRES_PER_DEGREE <= FASTEST
     if not walks or _longest_way(tracks) * METRES_PER_DEGREE < WALKED:
         return ""
-    latitude_first = _is_latitude_first(tracks)
+    latitude_first: bool | None = float(np.max(np.abs(y))) > POLE
+    if farthest[1] <= POLE:
+        latitude_first = _is_latitude_first(METRES_PER_DEGREE * _velocities(tracks), _median(x), _median(y))
     order = "latitude (x) and longitude (y)" if latitude_first else "longitude (x) and latitude (y)"
     remedy = ", give --units deg"
     if latitude_first:
@@ -172,24 +176,53 @@ def _degree_warning(tracks: Trajectories, options: ReadOptions, columns: FileCol
     )
 
 
-def _is_latitude_first(tracks: Trajectories) -> bool | None:
-    """Return whether x [degrees] is the latitude; None if neither the values nor the speeds decide.
+def _order_warning(tracks: Trajectories, options: ReadOptions, columns: FileColumns) -> str:
+    """Return a warning if degrees that were converted are perhaps in the other order, else an empty text."""
+    if columns.origin is None or max(map(abs, columns.origin)) > POLE or columns.x.strip().lower() in LONGITUDE:
+        return ""
+    x, y = columns.origin
+    cos_x, cos_y = (max(1e-6, math.cos(math.radians(angle))) for angle in (x, y))
+    latitude_first = _is_latitude_first(_velocities(tracks) / (cos_y, 1.0), x, y)
+    east, north = float(np.ptp(tracks.x)), float(np.ptp(tracks.y))
+    other = north * cos_x, east / cos_y
+    extents = f"{east:.3g} m to the east and {north:.3g} m to the north as read, {other[0]:.3g} m and {other[1]:.3g} m"
+    if latitude_first:
+        return (
+            f"places extend {extents} exchanged, and only exchanged people walk as fast to the east as to the north:"
+            f" the degrees are probably of latitude (x) and longitude (y), {columns.exchange}"
+        )
+    given = options.columns is not None and "x" in options.columns
+    if latitude_first is None and not given and abs(math.log(cos_x * cos_y)) > UNEVEN:
+        keep = f", if not, give --columns x={columns.x} y={columns.y}" if columns.x else ""
+        return (
+            f"places extend {extents} if x, {x:.6g}, is the latitude, which the speeds do not decide: if it is,"
+            f" {columns.exchange}{keep}"
+        )
+    return ""
+
+
+def _is_latitude_first(velocities: Floats, x: float, y: float) -> bool | None:
+    """Return whether x is the latitude; None if the speeds do not decide.
 
     A degree of longitude is shorter than one of latitude, so people who walk to the east are faster in degrees.
+
+    Args:
+        velocities: ``[N, 2]`` along x and y, degrees of both with the length of one of latitude [m/s].
+        x, y: place [degrees].
     """
-    if np.max(np.abs(tracks.y)) > POLE:
-        return True
-    if np.max(np.abs(tracks.x)) > POLE:
-        return False
-    east, north = np.abs(_velocities(tracks).T) * METRES_PER_DEGREE
+    east, north = np.abs(velocities.T)
     moves = np.hypot(east, north) > MOVING
     along = east[moves & (east > 2.0 * north)], north[moves & (north > 2.0 * east)]
     if min(map(len, along)) < ENOUGH:
         return None
     ratio = math.log(float(np.median(along[0]) / np.median(along[1])))
-    cos_x, cos_y = (math.cos(math.radians(float(np.median(axis)))) for axis in (tracks.x, tracks.y))
+    cos_x, cos_y = (max(1e-6, math.cos(math.radians(angle))) for angle in (x, y))
     given, exchanged = abs(ratio + math.log(cos_y)), abs(ratio - math.log(cos_x))
     return exchanged < given if abs(exchanged - given) > UNEVEN else None
+
+
+def _median(values: Floats) -> float:
+    return float(np.median(values))
 
 
 def _height_warning(tracks: Trajectories, columns: FileColumns) -> str:
