@@ -22,7 +22,7 @@ from fuzzing import check_sentence, flatten_mcap
 from crowdbot.core import CrowdbotError
 
 ROOT = Path(__file__).parents[1]
-sys.path += [str(ROOT / "tests"), str(ROOT / "tests" / "data")]
+sys.path += [str(ROOT / "tests" / folder) for folder in ("", "data", "trials", "world")]
 SAMPLES = ROOT / "tests" / "fuzz-samples"
 ASSETS = ROOT / "src" / "crowdbot" / "assets"
 OUT = "out"
@@ -69,16 +69,17 @@ def read_tracks(folder: Path, name: str, rng: random.Random) -> None:
 
     from crowdbot.data import FORMATS, load
 
-    options = dict(SYNTHETIC[name].options) if name in SYNTHETIC else {}
+    main = next((item for item in SYNTHETIC if (folder / item).is_file()), name)
+    options = dict(SYNTHETIC[main].options) if main in SYNTHETIC else {}
     if rng.random() < 0.1:
         options["format"] = rng.choice(list(FORMATS))
     if rng.random() < 0.2:
         options["fps"] = rng.choice((25.0, 2.5, 1e-3, 9999.0))
     try:
-        tracks = load(folder / name, **options)  # type: ignore[arg-type]
+        tracks = load(folder / main, **options)  # type: ignore[arg-type]
         tracks.summary()
     except CrowdbotError as error:
-        if name not in str(error):
+        if name not in str(error) and main not in str(error):
             raise AssertionError(f"the message names no file: {error}") from None
         raise
 
@@ -159,6 +160,73 @@ def read_original(folder: Path, name: str, rng: random.Random) -> None:
                 trial_xml(trial)
                 check_trial(trial)
     experiment_xml(import_experiment(folder / "Config.xml").experiment)
+
+
+def make_scenes(folder: Path) -> None:
+    """Write files of other simulators, a drawing and a building; the world of Gazebo has a mesh and another model."""
+    from test_buildings import building
+    from test_dxf import DOOR, SQUARE, drawing, insert, line, with_blocks
+    from test_foreign import PEDSIM, UMANS, VADERE, WALLS
+    from test_hunavsim import AGENTS
+    from test_scene_files import FILES, GAZEBO, TABLE, named_files, two_boxes
+
+    mesh = "<mesh><uri>hall.dae</uri><submesh><name>post</name><center>1</center></submesh></mesh>"
+    texts = {name: {name: text} for name, text in FILES.items()}
+    texts["hall.world"] = {
+        "hall.world": GAZEBO.replace("<mesh><uri>chair.dae</uri></mesh>", mesh), "table/model.sdf": TABLE,
+    }  # fmt: skip
+    texts["umans"] = {"cross.xml": UMANS.replace("../walls.xml", "walls.xml"), "walls.xml": WALLS}
+    texts["vadere"] = {"rooms.scenario": json.dumps(VADERE)}
+    texts["pedsim"] = {"pedsim.xml": PEDSIM}
+    texts["hunavsim"] = {"agents.yaml": AGENTS}
+    texts["drawing"] = {"plan.dxf": with_blocks(drawing(SQUARE, line(1, 1, 4, 2), insert("door", 3, 3)), DOOR)}
+    for sample, files in texts.items():
+        (folder / sample).mkdir()
+        if sample in ("hall.xml", "project.xml"):
+            named_files(folder / sample)
+        for name, text in files.items():
+            (folder / sample / name).parent.mkdir(exist_ok=True)
+            (folder / sample / name).write_text(text, encoding="utf-8")
+    two_boxes(folder / "hall.world", "dae")
+    (folder / "building").mkdir()
+    building(folder / "building")
+
+
+SCENES = (
+    "hall.world", "project.xml", "hall.xml", "hallS.xml", "rooms.xml", "world.yaml", "scenario.json", "cross.xml",
+    "rooms.scenario", "pedsim.xml", "agents.yaml", "plan.dxf", "hall.glb",
+)  # fmt: skip
+"""Main files of the samples of scenes, before the files that they name."""
+
+
+def read_scene(folder: Path, name: str, rng: random.Random) -> None:
+    """Import a scene, check the trial and write it."""
+    from crowdbot.trials import check_trial, import_trial, trial_xml
+
+    path = next(folder / main for main in SCENES if (folder / main).exists())
+    for _, trial in import_trial(path).trials:
+        trial_xml(trial)
+        with contextlib.suppress(CrowdbotError):
+            check_trial(trial)
+
+
+def make_imports(folder: Path) -> None:
+    """Write robots of makers with every kind of base as xacro, and a model as SDF."""
+    from base_texts import BASES, base_file
+    from test_sdf import CAR
+
+    for kind in BASES:
+        (folder / kind).mkdir()
+        (folder / kind / "maker.xacro").write_text(base_file(kind), encoding="utf-8")
+    (folder / "sdf").mkdir()
+    (folder / "sdf" / "maker.sdf").write_text(CAR, encoding="utf-8")
+
+
+def read_import(folder: Path, name: str, rng: random.Random) -> None:
+    """Convert the file of a maker to a robot folder."""
+    from crowdbot.world import import_robot
+
+    import_robot(folder / name, "maker")
 
 
 def make_robots(folder: Path) -> None:
@@ -376,6 +444,9 @@ def read_session(folder: Path, name: str, rng: random.Random) -> None:
 
 
 KINDS = {
+    "scenes": Kind("scenes of other simulators, drawings, buildings", make_scenes, read_scene),
+    "imports": Kind("robots of makers: URDF, xacro, SDF", make_imports, read_import),
+    "labels": _tracks("ind", "jrdb", "lcas", "wildtrack", "thor-magni"),
     "text": _tracks("petrack", "eth-obsmat", "sgan", "ucy-vsp", "sdd", "trajnetpp", "csv"),
     "peers": _tracks(
         "mot", "kitti", "vadere", "viswalk", "edinburgh", "grand-central", "four-rows", "atc", "rosbag1", "rosbag2"

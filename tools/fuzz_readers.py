@@ -45,8 +45,8 @@ TIME_LIMIT = 20.0
 """Longest time for one file [s]."""
 MEMORY_LIMIT = 1 << 30
 """Most memory above that of the child process after the unchanged samples [bytes]."""
-XML = (".xml", ".urdf", ".dae")
-BINARY = (".h5", ".sqlite", ".parquet", ".npz", ".mcap", ".stl", ".ply", ".glb", ".pgm")
+XML = (".xml", ".urdf", ".dae", ".world", ".sdf")
+BINARY = (".h5", ".sqlite", ".parquet", ".npz", ".mcap", ".stl", ".ply", ".glb", ".pgm", ".gz", ".bag", ".db3")
 GOOD = ("read", "rejected")
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 CHANGES = ("os.mkdir", "os.remove", "os.rmdir", "os.rename", "os.link", "os.symlink", "os.truncate", "os.chmod")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_recordings import rows, sdd_annotations, social_ways
+from synthetic_recordings import SYNTHETIC, rows, sdd_annotations, social_ways
 
 from crowdbot.core import DataError
 from crowdbot.data import load
@@ -15,7 +15,7 @@ from crowdbot.data import load
 ROOT = Path(__file__).parents[2]
 KINDS = (
     "text", "peers", "hdf5", "sqlite", "parquet", "npz", "mcap", "weights", "trials", "originals", "robots", "xacro",
-    "meshes", "maps", "episodes", "experiments", "sessions",
+    "meshes", "maps", "episodes", "experiments", "sessions", "scenes", "imports", "labels",
 )  # fmt: skip
 
 
@@ -28,6 +28,19 @@ def test_a_label_without_quotes_is_named_with_its_line(tmp_path, label):
     path.write_text("\n".join(lines))
     with pytest.raises(DataError, match=rf"annotations.txt line 71: the label is {label}, it must be a quoted word"):
         load(path)
+
+
+@pytest.mark.parametrize("value", ["0.5", "nan", "x", "", "1e300"])
+def test_a_road_user_of_ind_without_a_number_is_named(tmp_path, value):
+    SYNTHETIC["07_tracks.csv"].write(tmp_path / "07_tracks.csv")
+    classes = tmp_path / "07_tracksMeta.csv"
+    lines = classes.read_text().splitlines()
+    lines[2] = lines[2].replace(",2,", f",{value},", 1)
+    classes.write_text("\n".join(lines))
+    with pytest.raises(
+        DataError, match=r"07_tracks\.csv: _tracksMeta\.csv row 2: trackId is '?[a-z0-9.+]+'?, it must be"
+    ):
+        load(tmp_path / "07_tracks.csv")
 
 
 @pytest.mark.parametrize("column", range(9))

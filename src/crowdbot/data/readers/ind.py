@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import DataError
+from crowdbot.data.rows import integers
 from crowdbot.data.source import Source
 from crowdbot.data.trajectories import Trajectories
 
@@ -34,7 +35,9 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read the centers of all road users; classes are labels, such as ``pedestrian``."""
     table = _rows(source.name, source.text(), NAMES)
     columns = {name: numbers(np.array([row[name] for row in table]), name, source.name, None) for name in NAMES}
-    classes = {int(row["trackId"]): row["class"] for row in _beside(source.path, "_tracksMeta.csv", "trackId", "class")}
+    users, place = _beside(source.path, "_tracksMeta.csv", "trackId", "class"), f"{source.name}: _tracksMeta.csv"
+    ids = integers(numbers(np.array([row["trackId"] for row in users]), "trackId", place, None), "trackId", place)
+    classes = dict(zip(ids.tolist(), (row["class"] for row in users), strict=True))
     rates = [row["frameRate"] for row in _beside(source.path, "_recordingMeta.csv", "frameRate")]
     try:
         fps = float(rates[0]) if rates else VIDEO_FPS
