@@ -27,6 +27,8 @@ from crowdbot.core import InputError, import_optional, refuse_system, wrap_angle
 from crowdbot.messages import points_in
 from crowdbot.recording import StepMessage
 
+from .robot_link import UNREAD
+
 PLATFORM = "Device/SubDeviceList/Platform"
 SEGMENTS = 15
 BUMPERS = ("FrontLeft", "Back", "FrontRight")
@@ -191,6 +193,8 @@ class NaoqiBridge:
         """Reads of the memory at random moments, and those that saw the virtual values."""
         self.cycle = 0.0
         """Real time [s] between two rewrites of the robot, 0 if there were none."""
+        self.unread: list[float] = []
+        """Times [s] for which the velocity of the robot was not read: a shorter command counts in its odometry only."""
         self.connections = 0
         """Number of connections until now."""
         self._robot, self._truth, self._topics = "", "", dict[str, str]()
@@ -273,6 +277,8 @@ class NaoqiBridge:
             if self._follower is not None:
                 self._follower.align()
             self._connected.set()
+        elif "unread" in fields:
+            self.unread.append(fields["unread"][1] - fields["unread"][0])
         elif "lost" in fields:
             self._problem = fields["lost"]
         elif "reads" in fields:
@@ -320,11 +326,18 @@ class NaoqiBridge:
         self._close()
 
     def remark(self) -> str:
-        """Return how many reads saw the virtual values."""
-        if not self.reads:
-            return ""
-        cycle = f", which rewrites them every {1e3 * self.cycle:.1f} ms" if self.cycle else ""
-        return f"naoqi: {100 * self.share:.0f} % of {self.reads} reads saw the virtual values of the robot{cycle}"
+        """Return how many reads saw the virtual values, and for how long the velocity of the robot was not read."""
+        remarks = []
+        if self.reads:
+            cycle = f", which rewrites them every {1e3 * self.cycle:.1f} ms" if self.cycle else ""
+            share = 100 * self.share
+            remarks.append(f"{share:.0f} % of {self.reads} reads saw the virtual values of the robot{cycle}")
+        if self.unread:
+            remarks.append(
+                f"{len(self.unread)} times, the velocity of the robot was not read for more than {1e3 * UNREAD:.0f} ms"
+                f" (at most {1e3 * max(self.unread):.0f} ms), and the virtual robot followed its odometry alone"
+            )
+        return f"naoqi: {'; '.join(remarks)}" if remarks else ""
 
     def _close(self) -> None:
         process, thread = self._process, self._thread

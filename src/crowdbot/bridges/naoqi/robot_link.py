@@ -8,6 +8,8 @@ standard library only. Lines of JSON come in, and go out:
     out  {"lost": TEXT}                    the robot does not answer; it tries again each second
     out  {"velocity": [X, Y, TURN], "pose": [X, Y, HEADING]}   of the robot: forward, left [m/s], turn [rad/s]; its
                                            odometry [m], [rad]; at each change, and 20 times a second
+    out  {"unread": [BEGIN, END]}          times [s] of two reads of the velocity that are further apart than 20 ms;
+                                           a velocity that the robot had in between only is in its odometry alone
     out  {"reads": N, "virtual": N, "cycle": SECONDS}   reads at random moments, those with virtual values; the cycle
 
 The process ends when its input ends. The robot then rewrites all values within a cycle.
@@ -37,8 +39,8 @@ TOLERANCE = 1e-5
 """Difference of a value that the robot has stored with 32 bits."""
 POLL, TOLD = 0.05, 0.5
 """Mean time [s] between two reads that are counted, and time between two lines with their numbers."""
-MOTION, REPEAT = 0.01, 0.05
-"""Time [s] between two looks at the motion, and longest time between two lines with it."""
+MOTION, UNREAD, REPEAT = 0.01, 0.02, 0.05
+"""Time [s] between two reads of the motion, the longest that is not told, and the longest between two lines with it."""
 
 
 class Output:
@@ -77,6 +79,36 @@ class RewriteCycle:
         return self._last + self.length if self.length else 0.0
 
 
+class MotionReader:
+    """Reads the velocity of the robot, which NAOqi does not announce: a program polls it, and tells when it could not.
+
+    Args:
+        motion: the service ``ALMotion``.
+        tell: writes a line to the output.
+        monotonic: source of real time [s].
+    """
+
+    def __init__(
+        self, motion: Any, tell: Callable[[dict[str, Any]], None], monotonic: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._motion, self._tell, self._monotonic = motion, tell, monotonic
+        self._velocity = list[float]()
+        self._last = self._told = monotonic()
+
+    def read(self) -> None:
+        """Tell the motion if the velocity has changed or some time has passed, and a gap since the last read."""
+        begin = self._monotonic()
+        velocity = [float(item) for item in self._motion.getRobotVelocity()]
+        end = self._monotonic()
+        if end - self._last > UNREAD:
+            self._tell({"unread": [self._last, end]})
+        self._last = begin
+        if velocity == self._velocity and end - self._told < REPEAT:
+            return
+        self._velocity, self._told = velocity, end
+        self._tell({"velocity": velocity, "pose": [float(item) for item in self._motion.getRobotPosition(True)]})
+
+
 class RobotLink:
     """Keeps the memory of a robot virtual.
 
@@ -93,7 +125,6 @@ class RobotLink:
         self._news = threading.Event()
         self._cycle, self._probe, self._writes = RewriteCycle(), 0, 0
         self._reads = self._virtual = 0
-        self._velocity, self._told = list[float](), 0.0
 
     def take(self, values: dict[str, float]) -> None:
         """Take values for the memory."""
@@ -115,21 +146,26 @@ class RobotLink:
                 self.ended.wait(AGAIN)
 
     def _connect(self) -> None:
-        session, watch = _session(self.url), None
+        session, lost = _session(self.url), threading.Event()
+        # The motion has a thread and a connection of its own: the reads of the memory would hold it up.
+        threads = [
+            threading.Thread(target=self._watch, args=(work, lost), daemon=True)
+            for work in (self._read_memory, self._read_motion)
+        ]
         try:
             memory = session.service("ALMemory")
-            lost = threading.Event()
-            watch = threading.Thread(target=self._watch, args=(lost,), daemon=True)
-            watch.start()
+            for thread in threads:
+                thread.start()
             self._tell({"connected": True})
             while not self.ended.is_set() and not lost.is_set():
                 self._write(memory)
             if lost.is_set():
                 raise ConnectionError("the robot does not answer")
         finally:
-            if watch is not None:
-                lost.set()
-                watch.join(2.0)
+            lost.set()
+            for thread in threads:
+                if thread.ident is not None:
+                    thread.join(2.0)
             with contextlib.suppress(Exception):
                 session.close()
 
@@ -155,35 +191,32 @@ class RobotLink:
         if not self._news.is_set():
             self._probe += 7  # the real value of this key may equal the virtual one
 
-    def _watch(self, lost: threading.Event) -> None:
-        """Count reads over a connection of their own, as the programs of the robot read, and tell the velocity."""
+    def _watch(self, work: Callable[[Any, threading.Event], None], lost: threading.Event) -> None:
+        """Read from the robot over a connection of its own, until it is lost."""
         try:
             session = _session(self.url)
-            memory = session.service("ALMemory")
-            motion = session.service("ALMotion") if _has_motion(session) else None
-            told = due = 0.0
-            while not lost.wait(max(0.0, min(MOTION, due - time.monotonic()))):
-                if motion is not None:
-                    self._tell_motion(motion)
-                if time.monotonic() < due:
-                    continue
-                due = time.monotonic() + random.uniform(0.2, 1.8) * POLL  # noqa: S311, moments without a pattern
-                if values := self._values:
-                    self._count(memory, values)
-                if time.monotonic() - told > TOLD:
-                    told = time.monotonic()
-                    self._tell({"reads": self._reads, "virtual": self._virtual, "cycle": self._cycle.length})
+            work(session, lost)
             session.close()
         except Exception:  # the writer tells it
             lost.set()
 
-    def _tell_motion(self, motion: Any) -> None:
-        """Tell the motion of the robot if its velocity has changed, or a moment has passed."""
-        velocity, now = [float(item) for item in motion.getRobotVelocity()], time.monotonic()
-        if velocity == self._velocity and now - self._told < REPEAT:
-            return
-        self._velocity, self._told = velocity, now
-        self._tell({"velocity": velocity, "pose": [float(item) for item in motion.getRobotPosition(True)]})
+    def _read_memory(self, session: Any, lost: threading.Event) -> None:
+        """Count reads, as the programs of the robot read."""
+        memory, told = session.service("ALMemory"), 0.0
+        while not lost.wait(random.uniform(0.2, 1.8) * POLL):  # noqa: S311, times without a pattern
+            if values := self._values:
+                self._count(memory, values)
+            if time.monotonic() - told > TOLD:
+                told = time.monotonic()
+                self._tell({"reads": self._reads, "virtual": self._virtual, "cycle": self._cycle.length})
+
+    def _read_motion(self, session: Any, lost: threading.Event) -> None:
+        """Tell the velocity of the robot."""
+        if _has_motion(session):
+            reader = MotionReader(session.service("ALMotion"), self._tell)
+            reader.read()
+            while not lost.wait(MOTION):
+                reader.read()
 
     def _count(self, memory: Any, values: dict[str, float]) -> None:
         found = memory.getListData(list(values))
