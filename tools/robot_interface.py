@@ -22,9 +22,10 @@ TRIAL = """<trial name="robot-interface" duration="0.4">
 
 HEAD = """# Robot interface
 
-Topics and services of `crowdbot run TRIAL --bridge ...`, made from the code by `python tools/robot_interface.py`. The
-robot of this page is a Pepper named `robot` with more sensors, at a time step of 0.05 s. In your trial, the first part
-of a topic is the name of the robot, and the second the name of its sensor. Every robot has its own name space.
+Topics, services and actions of `crowdbot run TRIAL --bridge ...`, made from the code by
+`python tools/robot_interface.py`. The robot of this page is a Pepper named `robot` with more sensors, at a time step of
+0.05 s. In your trial, the first part of a topic is the name of the robot, and the second the name of its sensor. Every
+robot has its own name space.
 
 The messages are those of [recordings](recording.md), converted by the same code: what is recorded is what is sent.
 All time stamps are simulated time.
@@ -51,6 +52,13 @@ and another world, begin another episode (`episode-2.mcap`). A reset of scope 4 
 """
 PLAIN = """
 The bridges `ros1` and `ros2` have services of `std_srvs`, too, for systems without `simulation_interfaces`:
+"""
+ACTION_TEXT = """
+## Actions
+
+Programs send a goal, and get feedback and a result; see
+[joints](../how-to/joints.md#by-a-goal-of-followjointtrajectory). The bridge `rosbridge` carries both actions,
+`rosbridge-client` that of robots, and `ros1` that of robots as topics of actionlib.
 """
 TRANSPORT = """
 ## Transports
@@ -107,6 +115,8 @@ def page() -> str:
     )
     services = ((f"`/crowdbot/{name}`", f"`{item.kind}`", item.about) for name, item in SERVICES.items())
     plain = ((f"`{name}`", f"`std_srvs/{item.kind}`", item.about) for name, item in PLAIN_SERVICES.items())
+    actions = [(f"`{action.name}`", f"`{action.kind}`", action.about) for action in interface.actions]
+    actions += [("`/crowdbot/simulate_steps`", "`simulation_interfaces/action/SimulateSteps`", "steps while paused")]
     transports = (
         (f"`{address}`", about) for address, _, about in (line.partition(", ") for _, line in TRANSPORTS.values())
     )
@@ -120,6 +130,7 @@ def page() -> str:
         + INPUTS + "\n" + table(("topic", "type", "QoS", "content"), inputs)
         + SERVICE_TEXT + "\n" + table(("service", "type", "effect"), services)
         + PLAIN + "\n" + table(("service", "type", "effect"), plain)
+        + ACTION_TEXT + "\n" + table(("action", "type", "effect"), actions)
         + TRANSPORT + "\n" + table(("bridge", "what"), transports)
         + QUALITY + "\n" + table(("class", "reliability", "durability", "depth"), qualities)
         + CLOCKS + "\n" + table(("`--clock`", "meaning"), ((f"`{name}`", about) for name, about in MODES.items()))

@@ -67,12 +67,39 @@ def control(ros, number):
     return counts
 
 
+def follow(ros):
+    """Follow a joint trajectory to its end, cancel one, and send one for an unknown joint."""
+    client = roslibpy.ActionClient(ros, "/pepper/follow_joint_trajectory", "control_msgs/action/FollowJointTrajectory")
+    servers = roslibpy.Service(ros, "/rosapi/action_servers", "rosapi_msgs/GetActionServers")
+    for _ in range(300):  # until a client of the server has advertised it
+        if client.name in servers.call(roslibpy.ServiceRequest())["action_servers"]:
+            break
+        time.sleep(0.1)
+    feedback, results, errors = threading.Event(), [], []
+
+    def send(joint, seconds):
+        points = [{"positions": [0.5], "time_from_start": {"sec": seconds, "nanosec": 0}}]
+        goal = {"trajectory": {"joint_names": [joint], "points": points}}
+        return client.send_goal(goal, results.append, lambda values: feedback.set(), errors.append)
+
+    client.wait_goal(send("HeadYaw", 1), 30)
+    found = {"feedback": feedback.is_set()}
+    feedback.clear()
+    name = send("HeadYaw", 100)
+    assert feedback.wait(30.0)
+    client.cancel_goal(name)
+    client.wait_goal(name, 30)
+    client.wait_goal(send("HeadYow", 1), 30)
+    ends = [[item["values"]["error_code"], item["values"]["error_string"]] for item in results]
+    return {**found, "result": ends[0], "canceled": ends[1], "rejected": len(errors) == 1}
+
+
 def main():
     port, job = int(sys.argv[1]), sys.argv[2]
     number = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     ros = roslibpy.Ros("127.0.0.1", port)
     ros.run(timeout=30)
-    found = look(ros) if job == "look" else control(ros, number)
+    found = look(ros) if job == "look" else follow(ros) if job == "follow" else control(ros, number)
     print(json.dumps(found), flush=True)
     ros.close()
     ros.terminate()

@@ -24,7 +24,6 @@ from crowdbot.trials import Trial, check_trial
 
 from .port import BridgePort, steered_trial
 from .run_control import PAUSED, PLAYING, BridgeClock, InstantRepeat, Pace, RunControl
-from .simulation_services import FAILED, result
 from .transport import RemarkSource, Transport
 
 IDLE = 0.02
@@ -240,8 +239,7 @@ class BridgeRun:
         """Answer the calls that still wait at the end."""
         self.control.finish_steps(False)
         self.control.finish_restart("the run has ended")
-        for call in self.port.inbox.close():
-            call.answer(result(FAILED, "the run has ended"))
+        self.port.answer_rest("the run has ended")
 
     def _file(self, number: int) -> Path | None:
         if self.out is None or number == 1:

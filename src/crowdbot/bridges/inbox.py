@@ -6,7 +6,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
@@ -78,20 +78,26 @@ Answer = Callable[[dict[str, Any]], None]
 """Receives the fields of a response, or raises nothing if the caller has gone."""
 
 
-class ServiceCall(NamedTuple):
-    """A call of a service.
+@dataclass(eq=False)
+class ServiceCall:
+    """A call of a service, or a goal of an action.
 
     Fields:
-        service: name of the service.
-        request: fields of the request.
-        answer: called once with the fields of the response, in the thread of the simulation.
+        service: name of the service or action.
+        request: fields of the request or goal.
+        answer: called once with the fields of the response, in the thread of the simulation; for a goal, ``status`` and
+            ``result``.
         sender: name of the transport.
+        feedback: called with the fields of each feedback of a goal, in the thread of the simulation.
+        canceled: set, in any thread, to cancel a goal.
     """
 
     service: str
     request: Fields
     answer: Answer
     sender: str
+    feedback: Answer = lambda fields: None
+    canceled: bool = False
 
 
 @dataclass
@@ -166,13 +172,15 @@ class Inbox:
                 self.external_time = int(stamp.get("sec", 0)) * 10**9 + int(stamp.get("nanosec", 0))
             self._note()
 
-    def call(self, service: str, request: Fields, answer: Answer, sender: str) -> None:
-        """Take a call of a service; ``answer`` receives the response later.
+    def call(
+        self, service: str, request: Fields, answer: Answer, sender: str, feedback: Answer = lambda fields: None
+    ) -> ServiceCall:
+        """Take a call of a service, or a goal of an action; ``answer`` receives the response later.
 
         Raises:
-            InputError: there is no such service, or too many calls wait.
+            InputError: there is no such service or action, or too many calls wait.
         """
-        known = [service.name for service in self.interface.services]
+        known = [item.name for item in self.interface.services] + [item.name for item in self.interface.actions]
         if service not in known:
             raise InputError(f"there is no service {service!r}{did_you_mean(service, known)}")
         memory = memory_size(request)
@@ -182,9 +190,11 @@ class Inbox:
             if len(self._calls) >= MOST_CALLS:
                 raise InputError(f"{MOST_CALLS} calls wait for the simulation; wait for their responses")
             _check_memory("calls", self._call_memory + memory, "wait for their responses, or send less in a request")
-            self._calls.append(ServiceCall(service, request, answer, sender))
+            call = ServiceCall(service, request, answer, sender, feedback)
+            self._calls.append(call)
             self._call_memory += memory
             self._note()
+            return call
 
     def add(self, order: Request) -> None:
         """Add an order for the current instant.
@@ -204,6 +214,11 @@ class Inbox:
         """Note that the messages of an instant are sent now, at a simulated time [ns]."""
         with self._news:
             self._now = nanoseconds
+
+    @property
+    def now(self) -> int:
+        """Simulated time [ns] of the current instant."""
+        return self._now
 
     def wait(self, seconds: float) -> None:
         """Wait until something arrives, at most this time."""

@@ -122,10 +122,18 @@ def read_stamp(fields: Fields) -> int:
     >>> read_stamp({"header": {"stamp": {"sec": 1, "nanosec": 50}}, "twist": {}}), read_stamp({"linear": {}})
     (1000000050, 0)
     """
-    return _nanoseconds(fields, "header", "stamp") if "twist" in fields else 0
+    return read_duration(fields, "header", "stamp") if "twist" in fields else 0
 
 
-def _nanoseconds(fields: Any, *path: str) -> int:
+def read_duration(fields: Any, *path: str) -> int:
+    """Return a time or duration [ns] of nested fields, 0 if it is missing.
+
+    Raises:
+        InputError: it is no time.
+
+    >>> read_duration({"wait": {"sec": 1, "nanosec": 50}}, "wait")
+    1000000050
+    """
     names = (("sec", "secs"), ("nanosec", "nsecs"))  # ROS 2, ROS 1
     seconds, nanoseconds = (sum(read_number(fields, *path, name) for name in pair) for pair in names)
     if abs(seconds) > LONGEST_TIME:
@@ -165,11 +173,11 @@ def read_trajectory(fields: Fields, robot: str, sender: str) -> list[Request]:
         place = f"points[{k}]."
         if not isinstance(point, Mapping):
             raise InputError(f"{place[:-1]} is a {type(point).__name__}, it must be an object")
-        times.append(_nanoseconds(point, "time_from_start"))
+        times.append(read_duration(point, "time_from_start"))
         positions.append(_joint_values(point, "positions", names, place))
         given = len(_plain_list(point.get("velocities")) or ())
         velocities.append(_joint_values(point, "velocities", names, place) if given else [math.nan] * len(names))
-    begin = _nanoseconds(fields, "header", "stamp")
+    begin = read_duration(fields, "header", "stamp")
     arrays = np.array(times, dtype=np.int64), np.array(positions), np.array(velocities)
     return [JointTrajectory(robot, tuple(names), begin, *arrays, sender)]
 
@@ -456,12 +464,29 @@ class Service:
 
 
 @dataclass(frozen=True)
+class Action:
+    """An action of a robot: programs send a goal, and get feedback and a result.
+
+    Fields:
+        name: name, such as ``/pepper/follow_joint_trajectory``.
+        robot: name of the robot.
+        kind: action type.
+        about: one line for people.
+    """
+
+    name: str
+    robot: str
+    kind: str = "control_msgs/action/FollowJointTrajectory"
+    about: str = "joint positions at times, with feedback and a result"
+
+
+@dataclass(frozen=True)
 class RobotInterface:
-    """Topics and services of a trial.
+    """Topics, services and actions of a trial.
 
     Fields:
         trial: the trial.
-        outputs, inputs, services: topics that are sent, topics that are received, and services.
+        outputs, inputs, services, actions: topics that are sent, topics that are received, services, and actions.
 
     >>> from crowdbot.trials import load_trial
     >>> interface = RobotInterface.of(load_trial("frontal"))
@@ -473,6 +498,7 @@ class RobotInterface:
     outputs: tuple[OutputTopic, ...]
     inputs: tuple[InputTopic, ...]
     services: tuple[Service, ...]
+    actions: tuple[Action, ...] = ()
 
     @classmethod
     def of(cls, trial: Trial, follows_clock: bool = False) -> RobotInterface:
@@ -495,7 +521,13 @@ class RobotInterface:
             for name, item in SERVICES.items()
         )
         taken = {input_topic.name for input_topic in inputs}
-        return cls(trial, tuple(output for output in outputs if output.name not in taken), tuple(inputs), services)
+        actions = tuple(
+            Action(f"/{robot.name}/follow_joint_trajectory", robot.name)
+            for robot in trial.robots
+            if robot.body.model.movable
+        )
+        sent = tuple(output for output in outputs if output.name not in taken)
+        return cls(trial, sent, tuple(inputs), services, actions)
 
     def output(self, name: str) -> OutputTopic:
         """Return an output topic.

@@ -61,9 +61,13 @@ the 0 s of points[0]; give each point its time
                     " stays at the last position"
                 )
 
+    def is_over(self, now: int) -> bool:
+        """Whether the last point is before a time [ns]."""
+        return bool((self.begin or now) + self.times[-1] < now)
+
 
 @dataclass(frozen=True, eq=False)
-class _Motion:
+class JointMotion:
     """The motion of one joint: ``[N]`` absolute times [ns], positions and velocities, within limits."""
 
     times: Ints
@@ -72,6 +76,8 @@ class _Motion:
     lower: float
     upper: float
     source: str
+    taken: int
+    """Time [ns] at which it was taken."""
 
     def at(self, now: int) -> tuple[float, float]:
         """Position and velocity at a time [ns], from the first point on; the last position is kept.
@@ -100,11 +106,11 @@ class JointMotions:
     """
 
     def __init__(self) -> None:
-        self._motions: dict[tuple[str, str], _Motion] = {}
+        self._motions: dict[tuple[str, str], JointMotion] = {}
         self._sent = -1
 
-    def begin(self, trajectory: JointTrajectory, simulation: Simulation) -> None:
-        """Begin to follow a trajectory at the current instant.
+    def begin(self, trajectory: JointTrajectory, simulation: Simulation) -> dict[str, JointMotion]:
+        """Begin to follow a trajectory at the current instant, and return the motions by joint.
 
         Raises:
             InputError: the robot or a joint does not exist, a position is not allowed, or the trajectory is over.
@@ -112,7 +118,7 @@ class JointMotions:
         control, now = simulation.control_of(trajectory.robot), simulation.world.clock.nanoseconds
         body = control.robot.body
         times = (trajectory.begin or now) + trajectory.times
-        if times[-1] < now:
+        if trajectory.is_over(now):
             raise InputError(
                 f"joint trajectory: it ends at {times[-1] / 1e9:g} s, before the current time {now / 1e9:g} s;"
                 " give a later header.stamp, or none"
@@ -128,17 +134,23 @@ class JointMotions:
         states = joint_states(simulation.world, control.agent, body, targets=control.joint_targets(0))
         for k, joint in enumerate(trajectory.joints):
             earlier = self._motions.get((trajectory.robot, joint))
-            position, velocity = states[joint] if earlier is None else earlier.at(now)
+            position, velocity = states[joint] if earlier is None or now >= earlier.times[-1] else earlier.at(now)
             old = 1 if times[0] > now else 0
-            self._motions[trajectory.robot, joint] = _Motion(
+            self._motions[trajectory.robot, joint] = JointMotion(
                 np.concatenate([[now][:old], times]),
                 np.concatenate([[position][:old], trajectory.positions[:, k]]),
                 np.concatenate([[velocity][:old], trajectory.velocities[:, k]]),
                 body.model.joints[joint].lower,
                 body.model.joints[joint].upper,
                 trajectory.source,
+                now,
             )
         self._sent = -1
+        return {joint: self._motions[trajectory.robot, joint] for joint in trajectory.joints}
+
+    def follows(self, robot: str, joint: str, motion: JointMotion) -> bool:
+        """Whether a motion is the latest of its joint, also after its last point."""
+        return self._motions.get((robot, joint)) is motion
 
     def stop(self, robot: str, joint: str) -> None:
         """Leave the trajectory of a joint."""
@@ -151,6 +163,5 @@ class JointMotions:
             return
         self._sent, then = now, now + simulation.world.clock.step_ns
         for (robot, joint), motion in list(self._motions.items()):
-            yield JointOrder(robot=robot, joint=joint, position=motion.at(then)[0], source=motion.source)
-            if then >= motion.times[-1]:
-                self.stop(robot, joint)
+            if now < motion.times[-1] or now == motion.taken:
+                yield JointOrder(robot=robot, joint=joint, position=motion.at(then)[0], source=motion.source)

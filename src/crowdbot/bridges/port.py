@@ -13,9 +13,10 @@ from crowdbot.trials import RobotSpec, Trial
 
 from .inbox import Inbox
 from .interface import Request, RobotInterface
-from .joint_trajectory import JointMotions, JointTrajectory
+from .joint_actions import ABORTED, INVALID_GOAL, JointActions, goal_end
+from .joint_trajectory import JointTrajectory
 from .run_control import RunControl
-from .simulation_services import answer_call
+from .simulation_services import FAILED, answer_call, result
 from .transport import Transport
 
 
@@ -83,7 +84,7 @@ class BridgePort:
         self.inbox = Inbox(self.interface)
         self._steps: StepMessages | None = None
         self._skipped: set[str] = set()
-        self._motions = JointMotions()
+        self._actions = JointActions()
 
     def describe(self, trial: Trial) -> RobotInterface:
         """Return the topics and services of a trial."""
@@ -104,7 +105,8 @@ class BridgePort:
         self._announce(trial)
         self.inbox.clear(self.interface)
         self.control.spawned.clear()
-        self._motions = JointMotions()
+        self._actions.end_all("the trial begins again")
+        self._actions = JointActions()
 
     def begin(self, simulation: Simulation) -> None:
         """Send the first instant of a simulation that has begun, with the map."""
@@ -139,21 +141,21 @@ class BridgePort:
 
     def take_orders(self, simulation: Simulation) -> list[Order]:
         """Return the orders for the current instant; what is impossible now is reported to the other programs."""
-        orders = list[Order]()
+        orders, motions = list[Order](), self._actions.motions
         for request in self.inbox.take_orders():
             self._take(request, simulation, orders)
             if isinstance(request, JointOrder):
-                self._motions.stop(request.robot, request.joint)
-        for target in self._motions.targets(simulation):
+                motions.stop(request.robot, request.joint)
+        for target in motions.targets(simulation):
             if not self._take(target, simulation, orders):
-                self._motions.stop(target.robot, target.joint)
+                motions.stop(target.robot, target.joint)
         return orders
 
     def _take(self, request: Request, simulation: Simulation, orders: list[Order]) -> bool:
         """Append an order, or begin a trajectory; return whether it is possible now."""
         try:
             if isinstance(request, JointTrajectory):
-                self._motions.begin(request, simulation)
+                self._actions.motions.begin(request, simulation)
                 return True
             request.check(simulation)
         except InputError as error:
@@ -164,11 +166,24 @@ class BridgePort:
         return True
 
     def serve(self, simulation: Simulation) -> None:
-        """Answer the calls that wait."""
+        """Answer the calls that wait, and follow the goals of actions."""
         for transport in self.transports:
             transport.poll()
+        robots = {action.name: action.robot for action in self.interface.actions}
         for call in self.inbox.take_calls():
-            answer_call(call, simulation, self.control, self.inbox)
+            if call.service in robots:
+                self._actions.begin(call, robots[call.service], simulation)
+            else:
+                answer_call(call, simulation, self.control, self.inbox)
+        self._actions.check(simulation)
+
+    def answer_rest(self, text: str) -> None:
+        """Answer the goals that are followed and the calls that wait with a problem, at the end."""
+        self._actions.end_all(text)
+        actions = {action.name for action in self.interface.actions}
+        for call in self.inbox.close():
+            is_goal = call.service in actions
+            call.answer(goal_end(ABORTED, INVALID_GOAL, text) if is_goal else result(FAILED, text))
 
     def report(self, level: str, text: str) -> None:
         """Tell all other programs about a problem."""

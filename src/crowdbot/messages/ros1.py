@@ -3,14 +3,39 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from .message_store import OWN, Messages
 
 TF = "geometry_msgs/TransformStamped[] transforms\n"
+ACTION = "FollowJointTrajectory"
+CONTROL = {
+    "JointTolerance": "string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration\n",
+    f"{ACTION}Goal": (
+        "trajectory_msgs/JointTrajectory trajectory\nJointTolerance[] path_tolerance\nJointTolerance[] goal_tolerance\n"
+        "duration goal_time_tolerance\n"
+    ),
+    f"{ACTION}Result": (
+        "int32 error_code\nint32 SUCCESSFUL=0\nint32 INVALID_GOAL=-1\nint32 INVALID_JOINTS=-2\n"
+        "int32 OLD_HEADER_TIMESTAMP=-3\nint32 PATH_TOLERANCE_VIOLATED=-4\nint32 GOAL_TOLERANCE_VIOLATED=-5\n"
+        "string error_string\n"
+    ),
+    f"{ACTION}Feedback": (
+        "std_msgs/Header header\nstring[] joint_names\ntrajectory_msgs/JointTrajectoryPoint desired\n"
+        "trajectory_msgs/JointTrajectoryPoint actual\ntrajectory_msgs/JointTrajectoryPoint error\n"
+    ),
+    f"{ACTION}ActionGoal": f"std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{ACTION}Goal goal\n",
+    f"{ACTION}ActionResult": f"std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{ACTION}Result result\n",
+    f"{ACTION}ActionFeedback": (
+        f"std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{ACTION}Feedback feedback\n"
+    ),
+}
+"""Types of ``control_msgs`` of ROS Noetic for the action FollowJointTrajectory."""
 
 
 @functools.cache
@@ -18,6 +43,8 @@ def _store() -> Any:
     store = get_typestore(Stores.ROS1_NOETIC)
     for name, text in {**OWN, "tf2_msgs/msg/TFMessage": TF}.items():
         store.register(get_types_from_msg(text, name))
+    for name, text in CONTROL.items():
+        store.register(get_types_from_msg(text, f"control_msgs/msg/{name}"))
     return store
 
 
@@ -59,6 +86,26 @@ class Ros1Messages:
         """Return the ROS 1 bytes of a message with the fields of ROS 1."""
         return bytes(self.store.serialize_ros1(message, message.__msgtype__))
 
+    def encode_fields(self, fields: Mapping[str, Any], kind: str) -> bytes:
+        """Return the ROS 1 bytes of a message from nested mappings; missing fields are 0 or empty.
+
+        >>> Ros1Messages().encode_fields({"id": "a"}, "actionlib_msgs/msg/GoalID")
+        b'\\x00\\x00\\x00\\x00\\x00\\x00\\x00\\x00\\x01\\x00\\x00\\x00a'
+        """
+        return self.encode(self._fill(fields, kind))
+
+    def _fill(self, fields: Mapping[str, Any], kind: str) -> Any:
+        values: dict[str, Any] = {}
+        for name, node in self.store.fielddefs[kind][1]:
+            if (part := _part(node)) and node[0] == Nodetype.NAME:
+                values[name] = self._fill(fields.get(name, {}), part)
+            elif part:
+                values[name] = [self._fill(item, part) for item in fields.get(name, ())]
+            else:
+                base = node[1][0] if node[0] == Nodetype.BASE else node[1][0][1][0]
+                values[name] = _plain_value(fields.get(name), base, node[0] != Nodetype.BASE)
+        return self.store.types[kind](**values)
+
     def definition(self, kind: str) -> str:
         """Return the definition of a type with all its parts."""
         return str(_definition(kind)[0])
@@ -95,6 +142,13 @@ def _is_equal(kind: str) -> bool:
     if [(name.lower(), node) for name, node in ours] != [(name.lower(), node) for name, node in theirs]:
         return False
     return all(_is_equal(part) for _, node in ours if (part := _part(node)))
+
+
+def _plain_value(value: Any, base: str, many: bool) -> Any:
+    """Return a number or text, or an array of them, as rosbags writes it."""
+    if base == "string":
+        return list(value or ()) if many else str(value or "")
+    return np.array(() if value is None else value, dtype=base) if many else value or 0
 
 
 def _part(node: Any) -> str:

@@ -28,6 +28,8 @@ from crowdbot.bridges.simulation_services import PLAIN_SERVICES, PlainService
 from crowdbot.core import InputError, is_loopback
 from crowdbot.messages import Messages, Ros1Messages
 
+from .actions import STATUS_PERIOD, ActionServer
+
 DEFAULT = "http://localhost:11311"
 MASTER_ANSWER_TIME = 5.0
 """Longest real time [s] of a call."""
@@ -354,16 +356,20 @@ class Ros1Subscription:
     Args:
         topic: the input topic.
         codec: types of ROS 1.
-        inbox: receives the messages.
+        receive: takes the topic, fields and sender of a message, as :meth:`Inbox.receive`.
         report: called with the level and text of a problem.
     """
 
     def __init__(
-        self, topic: InputTopic, codec: Ros1Messages, inbox: Inbox, report: Callable[[str, str], None]
+        self,
+        topic: InputTopic,
+        codec: Ros1Messages,
+        receive: Callable[[str, Mapping[str, Any], str], None],
+        report: Callable[[str, str], None],
     ) -> None:
         self.topic, self.kind = topic.name, topic.kinds[0]
         self._kinds = {ros1_kind(kind): kind for kind in topic.kinds}
-        self._codec, self._inbox, self._report = codec, inbox, report
+        self._codec, self._receive_fields, self._report = codec, receive, report
         self._tasks: dict[str, asyncio.Task[None]] = {}
 
     def connect(self, publishers: Sequence[str], master: Master) -> None:
@@ -436,7 +442,7 @@ class Ros1Subscription:
         """Give a message to the inbox."""
         try:
             message = self._codec.message(data, kind)
-            self._inbox.receive(self.topic, fields_of(message), "ros1")
+            self._receive_fields(self.topic, fields_of(message), "ros1")
         except InputError as error:
             self._report("error", str(error))
         except Exception as error:  # rosbags raises many kinds of errors for bytes of another type
@@ -635,6 +641,8 @@ class Ros1Session:
         self.host, self.interface, self.inbox, self.codec = host, interface, inbox, codec
         self.publications: dict[str, Publication] = {}
         self._subscriptions: dict[str, Ros1Subscription] = {}
+        self._actions: dict[str, ActionServer] = {}
+        self._telling: asyncio.Task[None] | None = None
         self._services = ServicePort(inbox, NODE)
         self._api = SlaveApi(master, self._address, self._found, self._ended, self._topics)
         self._http = aiohttp.ClientSession()
@@ -663,6 +671,7 @@ class Ros1Session:
         self._port = int(self._server.sockets[0].getsockname()[1])
         self._choose_topics()
         await self._register()
+        self._telling = asyncio.create_task(self._tell_states())
 
     async def keep(self) -> None:
         """Stay registered until :meth:`end`: change topics, and register again if the master was started anew."""
@@ -686,6 +695,8 @@ class Ros1Session:
             await self._unregister()
         for subscription in self._subscriptions.values():
             await subscription.close()
+        if self._telling is not None:
+            self._telling.cancel()
         if self._server is not None:
             self._server.close()
         for task in list(self._peers):
@@ -722,20 +733,40 @@ class Ros1Session:
 
     def _choose_topics(self) -> None:
         """Make what is sent and received fit the interface; connections of topics that stay are kept."""
+        loop = asyncio.get_running_loop()
+        self._actions = {
+            action.name: self._actions.get(action.name)
+            or ActionServer(action, self.inbox, self.codec, self._send, loop.call_soon_threadsafe)
+            for action in self.interface.actions
+        }
+        servers = self._actions.values()
         outputs = {item.name: item for item in (*self.interface.outputs, LOG)}
+        outputs |= {item.name: item for server in servers for item in server.outputs}
         kept = {name: publication for name, publication in self.publications.items() if name in outputs}
         kept = {name: item for name, item in kept.items() if item.kind == outputs[name].kind}
         self.publications = {
             name: kept.get(name) or Publication(output, self.codec) for name, output in outputs.items()
         }
-        for input_topic in self.interface.inputs:
-            if input_topic.name not in self._subscriptions:
-                self._subscriptions[input_topic.name] = Ros1Subscription(input_topic, self.codec, self.inbox, self.log)
+        receivers = [(item, self.inbox.receive) for item in self.interface.inputs]
+        for item, receive in receivers + [(item, server.receive) for server in servers for item in server.inputs]:
+            if item.name not in self._subscriptions:
+                self._subscriptions[item.name] = Ros1Subscription(item, self.codec, receive, self.log)
+
+    def _send(self, topic: str, data: bytes) -> None:
+        if topic in self.publications:
+            self.publications[topic].deliver(pack_frame(data))
+
+    async def _tell_states(self) -> None:
+        while True:
+            for server in list(self._actions.values()):
+                server.tell_states()
+            await asyncio.sleep(STATUS_PERIOD)
 
     async def _register(self) -> None:
         """Tell the master all topics and services; what it knows already stays as it is."""
         master, url = self._master, self.url
         wanted = {input_topic.name for input_topic in self.interface.inputs}
+        wanted |= {item.name for server in self._actions.values() for item in server.inputs}
         for name in set(self._subscriptions) - wanted:
             gone = self._subscriptions.pop(name)
             await gone.close()

@@ -13,8 +13,9 @@ from typing import Any
 
 import aiohttp
 
-from crowdbot.bridges.inbox import Inbox
+from crowdbot.bridges.inbox import Inbox, ServiceCall
 from crowdbot.bridges.interface import RobotInterface
+from crowdbot.bridges.joint_actions import ABORTED, INVALID_GOAL, REJECTED, goal_end
 from crowdbot.bridges.socket_server import MOST_TEXT
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
@@ -30,7 +31,8 @@ STARTUP, HEARTBEAT, MOST_REPLIES = 10.0, 10.0, 500
 
 
 class RosbridgeClient:
-    """A client of a rosbridge server: it advertises the topics and services of the simulation there.
+    """A client of a rosbridge server: it advertises the topics, services and actions of the simulation
+    there.
 
     The server then passes on commands to ``/robot/cmd_vel`` and calls of services. If the connection is lost, the robot
     stops after its timeout, and the client connects again by itself. A slow server receives the newest messages only.
@@ -65,6 +67,7 @@ class RosbridgeClient:
         self._outgoing: dict[str, Subscription] = {}
         self._latched: dict[str, OutgoingMessage] = {}
         self._replies: deque[str] = deque(maxlen=MOST_REPLIES)
+        self._goals: dict[str | int, ServiceCall] = {}
         self._steps: deque[list[OutgoingMessage]] = deque(maxlen=MOST_REPLIES)
 
     @classmethod
@@ -160,6 +163,8 @@ class RosbridgeClient:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+            for goal in self._goals.values():  # nobody watches the robot any more
+                goal.canceled = True
 
     async def _receive(self, socket: aiohttp.ClientWebSocketResponse) -> None:
         reader = FrameReader()
@@ -202,6 +207,8 @@ class RosbridgeClient:
             self._reply({"op": "subscribe", "topic": input_topic.name, "type": input_topic.kinds[0]})
         for service in self._interface.services:
             self._reply({"op": "advertise_service", "service": service.name, "type": service.kind})
+        for action in self._interface.actions:
+            self._reply({"op": "advertise_action", "action": action.name, "type": action.kind})
         for message in self._latched.values():
             self._offer(message)
 
@@ -243,6 +250,34 @@ class RosbridgeClient:
                 )
             except InputError as error:
                 self._reply({**row, "values": str(error), "result": False})
+        elif frame["op"] == "send_action_goal":
+            self._follow(self._inbox, frame)
+        elif frame["op"] == "cancel_action_goal" and (goal := self._goals.get(field(frame, "id", (str, int), ""))):
+            goal.canceled = True
+            self._inbox.wake()
+
+    def _follow(self, inbox: Inbox, frame: Mapping[str, Any]) -> None:
+        """Hand a goal to a robot, and its feedback and result to the server."""
+        number, action = field(frame, "id", (str, int), ""), field(frame, "action", str)
+        row = {"id": number, "action": action}
+
+        def finish(response: dict[str, Any]) -> None:
+            self._goals.pop(number, None)
+            state, end = response["status"], response["result"]
+            good = state != REJECTED
+            values = {"values": end if good else end["error_string"], "status": state if good else ABORTED}
+            self._reply({"op": "action_result", **row, **values, "result": good})
+
+        try:
+            self._goals[number] = inbox.call(
+                action,
+                field(frame, "args", dict, {}),
+                lambda response: self._call(finish, response),
+                self.name,
+                lambda fields: self._call(self._reply, {"op": "action_feedback", **row, "values": fields}),
+            )
+        except InputError as error:
+            finish(goal_end(REJECTED, INVALID_GOAL, str(error)))
 
 
 async def _wait(event: asyncio.Event) -> None:

@@ -10,8 +10,9 @@ from typing import Any, Protocol
 
 from rosbags.interfaces import Nodetype
 
-from crowdbot.bridges.inbox import Inbox
+from crowdbot.bridges.inbox import Inbox, ServiceCall
 from crowdbot.bridges.interface import PACKAGE, SERVICES, RobotInterface, interface_store, request_kind, response_kind
+from crowdbot.bridges.joint_actions import ABORTED, CANCELED, REJECTED, SUCCEEDED
 from crowdbot.core import InputError
 
 from .frames import OutgoingMessage, field
@@ -395,7 +396,8 @@ def _message_details(graph: RosGraph, request: Request) -> Answer:
 
 
 def _action_servers(graph: RosGraph, request: Request) -> Answer:
-    return {"action_servers": ["/crowdbot/simulate_steps", *graph.actions]}
+    own = [action.name for action in graph.interface.actions]
+    return {"action_servers": [SIMULATE_STEPS, *own, *graph.actions]}
 
 
 ROSAPI: dict[str, Callable[[RosGraph, Request], Answer]] = {
@@ -428,8 +430,6 @@ ROSAPI: dict[str, Callable[[RosGraph, Request], Answer]] = {
 
 SIMULATE_STEPS, STEP = "/crowdbot/simulate_steps", "/crowdbot/step_simulation"
 """The action of the simulation, ``simulation_interfaces/action/SimulateSteps``, and the service that does its work."""
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-"""States of goals, as in ``action_msgs/GoalStatus``."""
 PORTIONS, MOST_CALLS, MOST_OFFERS = 20, 200, 200
 Frame = Mapping[str, Any]
 
@@ -449,6 +449,8 @@ class CallRelay:
         """Calls of other clients that this one has not answered: caller and frame."""
         self._goals: dict[str, bool] = {}
         """Goals of the action of the simulation, and whether each goes on."""
+        self._followed: dict[str, ServiceCall] = {}
+        """Goals of actions of robots."""
         self._open = 0
 
     @property
@@ -473,6 +475,9 @@ class CallRelay:
             caller.calls.fail(frame, "the client that offers it has gone")
         self._asked.clear()
         self._goals.clear()
+        for call in self._followed.values():  # nobody watches the robot any more
+            call.canceled = True
+        self._followed.clear()
 
     def forget(self, caller: Peer) -> None:
         """Drop the calls of a client that has gone."""
@@ -523,7 +528,8 @@ class CallRelay:
     def _offer(self, frame: Frame, what: str, offered: dict[str, tuple[Peer, str]]) -> None:
         name, kind = field(frame, what, str), field(frame, "type", str)
         self.graph.check_name(name)
-        if (name in self.graph.service_types and name not in self.graph.services) or name == SIMULATE_STEPS:
+        own = {SIMULATE_STEPS, *(action.name for action in self.graph.interface.actions)}
+        if (name in self.graph.service_types and name not in self.graph.services) or name in own:
             raise InputError(f"{name!r} is offered by the simulation")
         if name in offered and offered[name][0] is not self.session:
             raise InputError(f"{name!r} is offered by another client")
@@ -579,18 +585,42 @@ class CallRelay:
             if action in self.graph.actions:
                 self.graph.actions[action][0].calls.hand(self.session, frame, frame)
                 return
+            if name in self._goals or name in self._followed or len(self._goals) + len(self._followed) >= MOST_CALLS:
+                raise InputError(f"a goal {name[:40]!r} is active, or there are too many")
+            if any(item.name == action for item in self.graph.interface.actions):
+                self._followed[name] = self._follow(frame, action, name, values)
+                return
             if action != SIMULATE_STEPS:
                 raise InputError(f"there is no action {action[:60]!r}")
             steps = values.get("steps", 1) if isinstance(values, dict) else values[0] if values else 1
             if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
                 raise InputError("steps must be a whole number from 1")
-            if name in self._goals or len(self._goals) >= MOST_CALLS:
-                raise InputError(f"a goal {name[:40]!r} is active, or there are too many")
-            self._goals[name] = True
             self._go_on(frame, 0, steps)
+            self._goals[name] = True
         except InputError as error:
-            self._goals.pop(name, None)
             self._result(frame, {}, ABORTED, False, str(error))
+
+    def _follow(self, frame: Frame, action: str, name: str, values: Any) -> ServiceCall:
+        """Hand a goal to a robot; feedback and result come in the thread of the graph."""
+        later, followed = self.graph.later, self._followed
+
+        def tell(fields: dict[str, Any]) -> None:
+            if name in followed:
+                self._feedback(frame, fields)
+
+        def finish(response: dict[str, Any]) -> None:
+            if followed.pop(name, None) is not None:
+                state, end = response["status"], response["result"]
+                good = state != REJECTED
+                self._result(frame, end, state if good else ABORTED, good, end["error_string"])
+
+        return self.graph.inbox.call(
+            action,
+            values if isinstance(values, dict) else {},
+            lambda response: later(finish, response),
+            "rosbridge",
+            (lambda fields: later(tell, fields)) if frame.get("feedback") else lambda fields: None,
+        )
 
     def _go_on(self, frame: Frame, done: int, steps: int) -> None:
         """Do the next portion of the steps of a goal."""
@@ -616,6 +646,10 @@ class CallRelay:
     def _cancel_goal(self, frame: Frame) -> None:
         action, name = field(frame, "action", str), field(frame, "id", str, "")
         if action in self.graph.actions and self.graph.actions[action][0].calls.cancel(self.session, name, action):
+            return
+        if name in self._followed:
+            self._followed[name].canceled = True
+            self.graph.inbox.wake()
             return
         if name not in self._goals:
             raise InputError(f"there is no goal {name[:60]!r}")
