@@ -84,6 +84,9 @@ def composed(count: int) -> dict[str, CrowdModel]:
         "cost-effort": CostModel(costs.Effort() + 0.1 * costs.NoiseTerm(), samples="random", **small),
         "cost-distance": CostModel(costs.CollisionDistance(), samples="umans", relaxation_time=0.5, **small),
         "cost-free-way": CostModel(costs.FreeWay(), contact_stiffness=62.5, max_acceleration=5.0, **small),
+        "cost-range": CostModel(costs.AdmissibleRange(), **small),
+        "cost-passing": CostModel(costs.PassingTimes(), samples="umans", **small),
+        "cost-flow": CostModel(costs.GoalForce() + 3.0 * costs.FocusOfExpansion(), max_acceleration=5.0),
         "mixture": Mixture((ORCA(), SocialForce(), VOG()), which=np.arange(count) % 3),
     }
 

@@ -16,14 +16,17 @@ from crowdbot.core import InputError, Scene, stream
 from crowdbot.core.geometry import time_to_contact, time_to_segment
 from crowdbot.models import ORCA, CollisionFreeSpeed, CostModel, Heuristics, PLEdestrians, PowerLaw, SocialForce
 from crowdbot.models.costs import (
+    AdmissibleRange,
     CollisionDistance,
     Effort,
+    FocusOfExpansion,
     FreeWay,
     GoalForce,
     HalfPlanes,
     Inertia,
     ModelForce,
     NoiseTerm,
+    PassingTimes,
     PowerLawEnergy,
     PowerLawForce,
     PreferredVelocity,
@@ -32,12 +35,15 @@ from crowdbot.models.costs import (
 )
 
 EVERY = [
+    AdmissibleRange(),
     CollisionDistance(),
     Effort(),
+    FocusOfExpansion(),
     FreeWay(),
     GoalForce(),
     HalfPlanes(),
     Inertia(),
+    PassingTimes(),
     PowerLawEnergy(),
     PowerLawForce(),
     PreferredVelocity(),
@@ -249,7 +255,7 @@ def test_reciprocal_obstacles_are_avoided():
     assert scene.position[0, 0, 0] > 5.5
 
 
-@pytest.mark.parametrize("cost", [*EVERY[:9], PreferredVelocity() + PowerLawEnergy()], ids=str)
+@pytest.mark.parametrize("cost", [*EVERY[:12], PreferredVelocity() + PowerLawEnergy()], ids=str)
 def test_alone_in_a_batch_or_in_parts_the_bytes_are_the_same(cost, monkeypatch):
     scene = crowd(9, A=12)
     model = CostModel(cost, optimiser="sampling", refinements=1, speeds=4, angles=9, contact_stiffness=50.0)
@@ -260,7 +266,18 @@ def test_alone_in_a_batch_or_in_parts_the_bytes_are_the_same(cost, monkeypatch):
     assert np.array_equal(model.velocity(scene, 0.1), alone)
 
 
-@pytest.mark.parametrize("cost", [PreferredVelocity() + PowerLawEnergy(), HalfPlanes(), FreeWay()], ids=str)
+@pytest.mark.parametrize(
+    "cost",
+    [
+        PreferredVelocity() + PowerLawEnergy(),
+        HalfPlanes(),
+        FreeWay(),
+        AdmissibleRange(),
+        PassingTimes(),
+        FocusOfExpansion(),
+    ],
+    ids=str,
+)
 def test_turning_and_shifting_turns_and_shifts(cost):
     scene = crowd(11, A=40)
     model = CostModel(cost, optimiser="sampling")

@@ -1,14 +1,17 @@
 """Cost terms over velocities, to compose crowd models."""
 
 from .cost_terms import (
+    AdmissibleRange,
     CollisionDistance,
     Effort,
+    FocusOfExpansion,
     FreeWay,
     GoalForce,
     HalfPlanes,
     Inertia,
     ModelForce,
     NoiseTerm,
+    PassingTimes,
     PowerLawEnergy,
     PowerLawForce,
     PreferredVelocity,
@@ -18,8 +21,10 @@ from .neighbor_view import NeighborView
 from .velocity_cost import Force, Sum, VelocityCost
 
 __all__ = [
+    "AdmissibleRange",
     "CollisionDistance",
     "Effort",
+    "FocusOfExpansion",
     "Force",
     "FreeWay",
     "GoalForce",
@@ -28,6 +33,7 @@ __all__ = [
     "ModelForce",
     "NeighborView",
     "NoiseTerm",
+    "PassingTimes",
     "PowerLawEnergy",
     "PowerLawForce",
     "PreferredVelocity",

@@ -23,6 +23,12 @@ SLOWEST = 1e-9
 """Least desired speed [m/s] in a quotient."""
 FAR = 1e3
 """Distance of the goal, in planning times, if only a desired velocity is given."""
+NARROW, WIDE, SPEED_MARGIN = 0.05, np.pi / 6.0, 0.05
+"""Greatest turn of :class:`AdmissibleRange` [rad] with late and with earlier contacts, and margin of speeds [m/s]."""
+PARALLEL = 1e-5
+"""Least product of a direction and a velocity [m/s] whose lines cross."""
+NEAREST, SLOWEST_FLOW, SHARPEST = 0.1, 0.01, 0.1
+"""Least distance ahead [m] and closing speed [m/s] in the optical flow, and greatest turn of its gradient [rad]."""
 
 
 @dataclass(frozen=True)
@@ -354,6 +360,176 @@ class CollisionDistance(VelocityCost):
         free = np.minimum(sight, np.where(soon, speed * np.where(soon, time, 0.0), np.inf))
         turn = _angle(candidates, world.wish) + _angle(candidates, world.velocity)
         return np.asarray(sight - free + turn + np.abs(speed - wanted) / np.maximum(wanted, SLOWEST))
+
+
+@dataclass(frozen=True)
+class AdmissibleRange(VelocityCost):
+    """Turn, change of speed and time to contact of velocities in a range that the time to contact sets.
+
+    The time to contact of the desired velocity sets the range. After ``far``, only the desired velocity is in it (with
+    0.05 rad and 0.05 m/s around it); before ``far``, turns of up to 30 degrees and changes of speed of up to the
+    difference between maximum and desired speed; before ``near``, all speeds, and turns of up to 90 degrees at contact.
+    From ``middle`` to ``far`` the greatest turn falls linearly. UMANS, whose ramp lacks a factor, allows no direction
+    there.
+
+    Args:
+        turn, acceleration, deviation, urgency: weights of the turn from the desired velocity, of the change of speed,
+            of the distance to the desired velocity and of the time to contact [1].
+        near, middle, far: times to contact [s] at which the range changes; contacts after ``far`` cost nothing.
+
+    Source: Karamouzas, Overmars 2010, A velocity-based approach for simulating human collision avoidance, as a cost by
+    van Toll et al. 2020.
+    """
+
+    turn: PerAgent = parameter(5.0, unit="1", low=0.0, high=20.0, source="UMANS")
+    acceleration: PerAgent = parameter(0.5, unit="1", low=0.0, high=5.0, source="UMANS")
+    deviation: PerAgent = parameter(1.0, unit="1", low=0.0, high=5.0, source="UMANS")
+    urgency: PerAgent = parameter(1.0, unit="1", low=0.0, high=5.0, source="UMANS")
+    near: PerAgent = parameter(2.5, unit="s", low=0.5, high=5.0, source="UMANS", min=1e-3)
+    middle: PerAgent = parameter(6.0, unit="s", low=1.0, high=8.0, source="UMANS", min=1e-3)
+    far: PerAgent = parameter(8.0, unit="s", low=2.0, high=12.0, source="UMANS", min=1e-3)
+
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        # turn (1 - cos / 2) + acceleration ||v'| - |v|| / top + deviation |v' - p| / (2 top) + urgency (far - t)+ / far
+        turn, change, deviation, urgency, near, middle, far = (
+            world.each(getattr(self, name), name)[:, None]
+            for name in ("turn", "acceleration", "deviation", "urgency", "near", "middle", "far")
+        )
+        first = world.first_contact(world.wish[:, None])
+        ramp = (far - first) / np.maximum(far - middle, SLOWEST)
+        widest = np.where(first < middle, WIDE, NARROW + (WIDE - NARROW) * np.clip(ramp, 0.0, 1.0))
+        widest = np.where(first < near, WIDE + (1.0 - first / near) ** 2 * (0.5 * np.pi - WIDE), widest)
+        speed, wanted, top = length(candidates), length(world.wish)[:, None], world.max_speed[:, None]
+        least = np.where(first < near, 0.0, wanted - SPEED_MARGIN - np.where(first < far, np.abs(top - wanted), 0.0))
+        most = np.where(first < near, top, wanted + np.where(first < far, np.abs(top - wanted), 0.0)) + SPEED_MARGIN
+        outside = (_angle(candidates, world.wish) > widest) | (speed < least) | (speed > most)
+        both = speed * wanted
+        cos = np.sum(candidates * world.wish[:, None], axis=-1) / np.where(both > 0.0, both, 1.0)
+        top = np.maximum(top, SLOWEST)
+        cost = turn * (1.0 - 0.5 * cos) + change * np.abs(speed - length(world.velocity)[:, None]) / top
+        cost = cost + deviation * length(candidates - world.wish[:, None]) / (2.0 * top)
+        cost = cost + urgency * np.maximum(far - world.first_contact(candidates), 0.0) / far
+        return np.where(outside, np.inf, cost)
+
+
+@dataclass(frozen=True)
+class PassingTimes(VelocityCost):
+    """Direction, then speed, that pass the point where paths cross before or after each neighbour. Walls are ignored.
+
+    A neighbour covers the crossing of the paths from t1 to t2. The cost of a direction grows with the part of t1 to t2
+    that the desired speed is in, less for late crossings, and with its angle; that of a speed with its distance to
+    the speeds that arrive at t1 and t2. An agent that walks away from the crossing of paths ignores it.
+
+    Args:
+        avoidance: weight of neighbours in the choice of a direction, the rest is that of the angle [1].
+        time_horizon: latest t1 and t2 [s].
+
+    Source: Paris, Pettré, Donikian 2007, doi:10.1111/j.1467-8659.2007.01090.x, in the interpretation of van Toll et al.
+    2020, whose authors do not vouch for it.
+    """
+
+    avoidance: PerAgent = parameter(0.5, unit="1", low=0.0, high=1.0, source="UMANS")
+    time_horizon: PerAgent = parameter(8.0, unit="s", low=1.0, high=12.0, source="UMANS", min=1e-3)
+
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        # 1000 (w mean of speed cost x earliness + (1 - w) (1 - cos) / 2) + sum of speed deviations + |v' - p| / 1000
+        horizon = world.each(self.time_horizon, "time_horizon")[:, None, None]
+        weight = world.each(self.avoidance, "avoidance")[:, None]
+        speed, wanted = length(candidates), length(world.wish)[:, None]
+        ahead = candidates / np.maximum(speed, 1e-300)[..., None]
+        motion = np.broadcast_to(world.motion[:, None], (*speed.shape, *world.motion.shape[1:]))
+        place = -world.offset[:, None]
+        turn = ahead[..., None, 0] * motion[..., 1] - ahead[..., None, 1] * motion[..., 0]
+        crosses = np.abs(turn) >= PARALLEL
+        along = (place[..., 0] * motion[..., 1] - place[..., 1] * motion[..., 0]) / np.where(crosses, turn, 1.0)
+        crossing = along[..., None] * ahead[:, :, None]
+        reach = world.reach[:, None]
+        walking = world.velocity[:, None, None]
+        meets = (_reach_time(-crossing, walking, reach) < horizon) | (length(walking) == 0.0)
+        pace = length(motion)
+        begin = np.minimum(_reach_time(place - crossing, motion, reach), horizon)
+        end = begin + reach / np.maximum(pace, 1e-300)
+        end = np.where(end > horizon, 0.0, end)
+        hurry, wait = (  # speeds that arrive at both times
+            np.where(time > 0.0, np.abs(along) / np.where(time > 0.0, time, 1.0), np.inf) for time in (begin, end)
+        )
+        counts = world.there[:, None] & crosses & meets
+        blocked = world.there[:, None] & ~crosses & (world.contact_times(ahead) <= horizon)
+        desired = np.maximum(wanted, SLOWEST)[..., None]
+        inside = np.minimum(np.maximum(1.0 - hurry / desired, 0.0), np.maximum(wait / desired - 1.0, 0.0))
+        inside = np.sum(np.where(counts, inside * (1.0 - begin / horizon), 0.0), axis=-1)
+        inside = inside / np.maximum(np.count_nonzero(world.there, axis=-1), 1)[:, None]
+        off = np.maximum(np.maximum(hurry - speed[..., None], speed[..., None] - wait), 0.0) / desired
+        off = np.sum(np.where(counts, off, np.where(blocked, np.inf, 0.0)), axis=-1)
+        cos = np.sum(ahead * world.wish[:, None], axis=-1) / np.maximum(wanted, 1e-300)
+        direction = weight * inside + (1.0 - weight) * 0.5 * (1.0 - cos)
+        return np.asarray(1e3 * direction + off + 1e-3 * length(candidates - world.wish[:, None]))
+
+
+@dataclass(frozen=True)
+class FocusOfExpansion(VelocityCost):
+    """Neighbours ahead, by the time until they are abreast and the lateral distance at which they then pass.
+
+    The cost of a neighbour is ``importance 10^(-distance / (sum of radii))``; the importance falls from ``strength`` to
+    a hundredth of it at ``time_horizon``, and to 0 at twice that time. Walls are ignored. The gradient is a turn of at
+    most 0.1 rad and a change of speed. It is meant for ``GoalForce() + 3.0 * FocusOfExpansion()``.
+
+    Args:
+        strength: importance of a neighbour who is abreast now [1].
+        time_horizon: time in which the importance falls [s].
+
+    Source: López, Chaumette, Marchand, Pettré 2019, doi:10.1111/cgf.13629, as a cost by van Toll et al. 2020.
+    """
+
+    natural: ClassVar[str] = "gradient"
+
+    strength: PerAgent = parameter(10.0, unit="1", low=0.0, high=50.0, source="UMANS")
+    time_horizon: PerAgent = parameter(5.0, unit="s", low=0.5, high=10.0, source="UMANS", min=1e-3)
+
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        return np.asarray(np.sum(self._flow(world, candidates)[0], axis=-1))
+
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
+        # sums over neighbours, over the angle and the speed of the velocity
+        cost, across, shift, rate, scale = (value[:, 0] for value in self._flow(world, velocity[:, None]))
+        speed, side = length(velocity)[:, None], np.sign(across - shift) / scale
+        turn = np.sum(cost * side * (shift**2 - across**2 - speed / rate), axis=-1)
+        turn = np.clip(turn, -SHARPEST, SHARPEST)
+        faster = np.sum(cost * side * (-shift / rate), axis=-1)
+        ahead = velocity / np.maximum(speed, 1e-300)
+        right = np.stack([ahead[:, 1], -ahead[:, 0]], axis=-1)
+        forward = speed[:, 0] * (1.0 - np.cos(turn)) + faster
+        return np.asarray(-(speed * np.sin(turn)[:, None] * right + forward[:, None] * ahead))
+
+    def _flow(self, world: NeighborView, candidates: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Return the cost of each neighbour ``[N, C, K]``, and tangents, rates [m/s] and scales of its optical flow."""
+        speed = length(candidates)
+        ahead = (candidates / np.maximum(speed, 1e-300)[..., None])[:, :, None]
+        right = np.stack([ahead[..., 1], -ahead[..., 0]], axis=-1)
+        place, motion = -world.offset[:, None], world.motion[:, None] - candidates[:, :, None]
+        depth, closing = np.sum(place * ahead, axis=-1), -np.sum(motion * ahead, axis=-1)
+        seen = world.there[:, None] & (depth >= NEAREST) & (closing >= SLOWEST_FLOW) & (speed > 0.0)[..., None]
+        depth, closing = np.where(seen, depth, 1.0), np.where(seen, closing, 1.0)
+        across = np.sum(place * right, axis=-1) / depth  # where the neighbour is seen, and where it expands from
+        shift = -np.sum(motion * right, axis=-1) / closing
+        strength, horizon = (
+            world.each(getattr(self, name), name)[:, None, None] for name in ("strength", "time_horizon")
+        )
+        time = depth / closing
+        importance = np.where(time <= 2.0 * horizon, strength * np.clip(1.0 - time / horizon, 0.01, 1.0), 0.0)
+        scale = world.reach[:, None] / (depth * np.log(10.0))
+        cost = importance * np.exp(-np.abs(across - shift) / np.maximum(scale, 1e-300))
+        return np.where(seen, cost, 0.0), across, shift, closing, np.maximum(scale, 1e-300)
+
+
+def _reach_time(place: Floats, velocity: Floats, reach: Floats) -> Floats:
+    """Return when a point at ``place`` comes within ``reach`` [m] of the origin ``[..., K]`` [s], 0 inside, or inf."""
+    a, b = np.sum(velocity**2, axis=-1), np.sum(place * velocity, axis=-1)
+    apart = np.sum(place**2, axis=-1) - reach**2
+    root = b * b - a * apart
+    meets = (b < 0.0) & (root > 0.0)
+    time = np.where(meets, apart / np.where(meets, np.sqrt(np.maximum(root, 0.0)) - b, 1.0), np.inf)
+    return np.where(apart <= 0.0, 0.0, time)
 
 
 def _angle(candidates: Floats, other: Floats) -> Floats:
