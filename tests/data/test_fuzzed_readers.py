@@ -43,6 +43,30 @@ def test_a_road_user_of_ind_without_a_number_is_named(tmp_path, value):
         load(tmp_path / "07_tracks.csv")
 
 
+LONG = "1" * 140_000
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("07_tracks.csv", "\n", f"\n{LONG}"),
+        ("THOR-Magni_120522_SC1A_R1.csv", "BODY_ROLES", LONG),
+        ("wildtrack/00000030.json", '"personID": ', '"personID": 1e999, "was": '),
+        ("cubberly.json", '"cx": ', f'"cx": {"1" * 400}, "was": '),
+        ("cubberly.json", '"cx": ', '"cx": [], "was": '),
+    ],
+)
+def test_values_beyond_every_limit_are_a_sentence(tmp_path, name, old, new):
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    SYNTHETIC[name].write(path)
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(DataError, match=rf"{path.name}.* is damaged: "):
+        load(path)
+
+
 @pytest.mark.parametrize("column", range(9))
 @pytest.mark.parametrize("value", ["inf", "nan"])
 def test_a_box_that_is_not_finite_is_a_sentence(tmp_path, column, value):

@@ -87,7 +87,7 @@ def _read(path: Path) -> RecordedStream:
         rows = np.array([list(map(float, line)) for line in lines[1:]], dtype=np.float64)
         rows = rows.reshape(-1, len(COLUMNS) + len(labels))
         name, kind, rate = str(head["name"]), str(head["type"]), float(head["rate"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, csv.Error):
         raise EpisodeError(f"the recorded stream {path} is damaged") from None
     stream_time, offset, clock = rows[:, : len(COLUMNS)].T
     return RecordedStream(name, kind, labels, units, rate, stream_time, offset, clock, rows[:, len(COLUMNS) :])

@@ -61,7 +61,10 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
 
 def _rows(name: str, text: str, columns: Sequence[str]) -> list[dict[str, str]]:
     """Return the rows of a table as words by column; it has the given columns, perhaps others."""
-    rows = list(csv.DictReader(io.StringIO(text, newline="")))
+    try:
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
+    except csv.Error as error:
+        raise DataError(f"{name} is not a table of inD, or is damaged: {error}") from None
     if not rows:
         raise DataError(f"{name} has no rows")
     missing = [column for column in columns if column not in rows[0]]

@@ -31,7 +31,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     try:
         clouds = json.loads(source.text())["labels"]
         rows = [row for name, boxes in clouds.items() for row in _rows(name, boxes)]
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         raise DataError(f"{source.name} is not a file of JRDB labels, or is damaged: {error!r}") from None
     if not rows:
         raise DataError(f"{source.name} has no boxes")

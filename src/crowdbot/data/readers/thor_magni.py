@@ -38,7 +38,10 @@ def sniff(source: Source) -> bool:
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read people and robots; the roles of people are labels."""
-    lines = csv.reader(io.StringIO(source.text(), newline=""))
+    try:
+        lines = iter(list(csv.reader(io.StringIO(source.text(), newline=""))))
+    except csv.Error as error:
+        raise DataError(f"{source.name} is not a table of THÖR-MAGNI, or is damaged: {error}") from None
     metadata: dict[str, list[str]] = {}
     names: list[str] = []
     for row in itertools.islice(lines, MOST_METADATA):
@@ -91,7 +94,7 @@ def _rows(
         try:
             places = [_mean(row, column) for both in columns.values() for column in both]
             found.setdefault(float(row[0]), places)
-        except (ValueError, IndexError):
+        except (ValueError, IndexError, OverflowError):
             raise DataError(f"{name} line {number}: a frame or a position is missing or is not a number") from None
     if not found:
         raise DataError(f"{name} has no rows")

@@ -57,7 +57,7 @@ def _places(path: Path) -> list[tuple[int, float, float]]:
     try:
         people: list[dict[str, Any]] = json.loads(Source.of(path).text())
         found = [(int(person["personID"]), int(person["positionID"])) for person in people]
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         raise DataError(f"{name} is not a file of WILDTRACK, or is damaged: {error!r}") from None
     bad = next((cell for _, cell in found if not 0 <= cell < COLUMNS * ROWS), None)
     if bad is not None:
