@@ -414,6 +414,18 @@ def test_locked_steering_joints_with_a_level_axis_are_refused(tmp_path, axis):
     assert len([row for row in made.guesses if row.what.startswith("wheel ")]) == 4
 
 
+@pytest.mark.parametrize(
+    ("mass", "wheel", "density"),
+    [("20", "1", ""), ("2", "0.1", ""), ("0.02", "0.001", "1.5"), ("0.5", "0.01", "7.8"), ("9000", "1", "1.1e+05")],
+)
+def test_a_mass_that_no_robot_has_is_marked(tmp_path, mass, wheel, density):
+    text = base_file("differential").replace("value='20'", f"value='{mass}'")
+    (tmp_path / "maker.xacro").write_text(text.replace("value='1'", f"value='{wheel}'"))
+    (row,) = [row for row in import_robot(tmp_path / "maker.xacro", "maker").guesses if row.what == "mass"]
+    assert row.status == ("doubtful" if density else "file")
+    assert row.source.endswith(f"; implausible: {density} kg/m3 in the box around its colliders") == bool(density)
+
+
 def lifted_hand(travel, fingers):
     """A lift, a wrist and fingers that hang down to the ground."""
     text = link("lift", "<box size='.1 .1 .1'/>") + link("wrist", "<box size='.05 .05 .05'/>")

@@ -27,13 +27,15 @@ from crowdbot.world.urdf.transforms import across
 
 from .base_kind import BaseKind, FoundWheel
 from .gazebo_tags import SAME
-from .guess_table import DERIVED, FILE, GUESS, GuessTable
+from .guess_table import DERIVED, DOUBTFUL, FILE, GUESS, GuessTable
 from .wheel import resistance, weak_motor
 
 GRAVITY = 9.81
 WHEEL_NAMES = ("wheel", "whl")
 WHEEL_WIDTH = 0.4
 """Width of a guessed wheel by its radius."""
+LIGHTEST, HEAVIEST = 10.0, 1e4
+"""Usual densities [kg/m3] of the box around a robot: ten times that of air, and that of steel."""
 SMALLEST_WHEEL, LARGEST_WHEEL = 0.005, 2.0
 """Limits [m] of the radius of a guessed wheel."""
 PAIR_TOLERANCE = 0.02
@@ -130,7 +132,12 @@ def add_masses(table: GuessTable, root: Element, model: RobotModel, urdf: str) -
             guessed += mass
         total += mass
     source = f"<inertial> of {known} links" + (f"; {guessed:.4g} kg are guesses" if guessed else "")
-    table.add("mass", f"{total:.4g} kg", source, f"<mass> in {urdf}", DERIVED if guessed else FILE)
+    status, points = DERIVED if guessed else FILE, model.points()
+    around = float(np.prod(np.ptp(points, axis=0))) if len(points) else 0.0
+    if around > 0.0 and not LIGHTEST <= total / around <= HEAVIEST:
+        source += f"; implausible: {total / around:.2g} kg/m3 in the box around its colliders"
+        status = DOUBTFUL if status == FILE else status
+    table.add("mass", f"{total:.4g} kg", source, f"<mass> in {urdf}", status)
     return total
 
 
