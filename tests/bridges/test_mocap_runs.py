@@ -170,6 +170,26 @@ def test_a_run_that_is_late_says_so(
     assert (text in capsys.readouterr().err) == late
 
 
+@pytest.mark.parametrize(("seconds", "late"), [(0.02, False), (0.06, True)])
+def test_a_trial_of_an_experiment_that_is_late_says_so(
+    seconds: float, late: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = itertools.count(0.0, seconds)
+    clock = functools.partial(PacedClock, monotonic=lambda: next(now), sleep=lambda seconds: None)
+    monkeypatch.setattr("crowdbot.experiments.console.PacedClock", clock)
+    monkeypatch.chdir(tmp_path)
+    Path("walk.bvh").write_bytes(WALK)
+    Path("led.xml").write_text(TEXT.format(2.0), encoding="utf-8")
+    Path("experiment.xml").write_text(
+        '<experiment name="visit"><block name="main"><trial name="meet" source="led.xml"/></block></experiment>'
+    )
+    Path("answers.json").write_text("{}")
+    words = ["experiment", "run", "experiment.xml", "--participant", "1", "--out", "data", "--answers", "answers.json"]
+    assert main([*words, "--mocap", "walk.bvh=guide", "--rate", "1"]) == 0
+    text = "warning: trial 1 of 1: the run could not keep up with --rate 1: 0.3 s late"
+    assert (text in capsys.readouterr().err) == late
+
+
 @pytest.mark.live
 def test_the_command_runs_a_trial_with_a_recording_and_with_a_live_stream(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -105,11 +105,8 @@ def _run(trial: Trial, options: argparse.Namespace, sources: Sequence[OrderSourc
             force=options.force,
             sources=sources,
         )
-    if clock is not None and clock.late > 0.0:
-        note(
-            f"warning: the run could not keep up with --pace {clock.rate:g}: {clock.late:.1f} s late. People and robots"
-            " that are moved live are too fast in simulated time; use a simpler trial or a faster machine"
-        )
+    if clock is not None and (remark := clock.late_remark("--pace")):
+        note(f"warning: {remark}")
     return done, time.perf_counter() - begin
 
 

@@ -224,6 +224,19 @@ class PacedClock(Clock):
         """Whether the clock is paused."""
         return self._lag is not None
 
+    def late_remark(self, option: str) -> str:
+        """Return a warning if the run could not keep up, otherwise an empty text.
+
+        Args:
+            option: name of the option that sets the rate.
+        """
+        if self.late <= 0.0:
+            return ""
+        return (
+            f"the run could not keep up with {option} {self.rate:g}: {self.late:.1f} s late. People and robots that are"
+            " moved live are too fast in simulated time; use a simpler trial or a faster machine"
+        )
+
     def pause(self) -> None:
         """Stop the schedule until :meth:`resume`; without effect if paused."""
         if self._lag is None:

@@ -46,6 +46,7 @@ class Console:
         report: called with the name of the running trial and the completed fraction, 0 to 1.
         rehearse: returns the programs that take the place of the participant in a trial (default: none).
         rate: simulated time over real time in the trials; None: as fast as possible.
+        warn: called with a remark for the experimenter, such as that a trial could not keep up with the rate.
     """
 
     def __init__(
@@ -56,8 +57,9 @@ class Console:
         report: Callable[[str, float], None],
         rehearse: Callable[[Trial], Sequence[OrderSource]] = lambda trial: (),
         rate: float | None = None,
+        warn: Callable[[str], None] = lambda text: None,
     ) -> None:
-        self._rehearse, self._rate = rehearse, rate
+        self._rehearse, self._rate, self._warn = rehearse, rate, warn
         self.runner, self.respondent, self.write, self.report = runner, respondent, write, report
         self._interrupt = Interrupt()
 
@@ -139,6 +141,8 @@ class Console:
                 raise
             self.runner.end(running.result, folder)
         self.report(what, 1.0)
+        if clock is not None and (remark := clock.late_remark("--rate")):
+            self._warn(f"{what}: {remark}")
 
     def _held(self, running: BackgroundRun) -> None:
         """Pause a trial, and continue it unless the experimenter decides otherwise."""

@@ -141,7 +141,15 @@ def _run(options: argparse.Namespace) -> int:
         record_streams(options, runner.folder, stack)
         try:
             with print_warnings():
-                Console(runner, respondent, write, _print_progress, walkers, options.rate).run()
+                Console(
+                    runner,
+                    respondent,
+                    write,
+                    _print_progress,
+                    walkers,
+                    options.rate,
+                    lambda text: note(f"warning: {text}"),
+                ).run()
         except ConsoleClosed as closed:
             note(
                 f"crowdbot: the session is stored in {runner.folder}{f' ({closed})' if str(closed) else ''}; continue "
