@@ -31,6 +31,15 @@ def test_every_transport_has_a_page():
 
 
 @pytest.mark.live
+def test_the_program_of_the_page_of_foxglove_says_what_to_start_first(tmp_path):
+    follow_page("foxglove", tmp_path)
+    program = begin([sys.executable, "drive.py", "1"], tmp_path, os.environ)
+    errors = program.communicate(timeout=60)[1]
+    assert (program.returncode, "Traceback" in errors) == (1, False)
+    assert "no server at ws://127.0.0.1:1: start crowdbot run TRIAL --bridge foxglove:1 first" in errors
+
+
+@pytest.mark.live
 @pytest.mark.parametrize(
     "transport", ["rosbridge", "ros2", *(pytest.param(item, marks=pytest.mark.sweep) for item in ("foxglove", "tcp"))]
 )

@@ -1,10 +1,14 @@
 """The rosbridge server and client with real other parties in processes of their own."""
 
 import asyncio
+import contextlib
+import gc
 import json
+import socket
 import subprocess
 import sys
 import threading
+import warnings
 from pathlib import Path
 
 import aiohttp
@@ -216,3 +220,31 @@ def test_a_frame_that_is_too_large_ends_only_its_own_connection():
     assert asyncio.run(flood()) == seen
     assert asyncio.run(connect(server.port)) == "service_response"
     server.stop()
+
+
+@pytest.mark.live
+@pytest.mark.parametrize("turns", range(6))
+def test_a_connection_that_comes_while_a_server_stops_is_closed(turns):
+    interface, clients = RobotInterface.of(load_trial("frontal")), []
+    server = RosbridgeServer(port=0)
+    server.start(interface, Inbox(interface))
+
+    def end(rest):
+        """End the server after some turns of its loop, while it accepts."""
+        loop = asyncio.get_running_loop()
+        loop.call_soon(end, rest - 1) if rest else server._server._end.set()
+
+    def connect():
+        clients.append(socket.create_connection(("127.0.0.1", server.port)))
+        end(turns)
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        server._server.call(connect)
+        wait(lambda: clients)
+        server.stop()
+        gc.collect()
+    with clients[0] as client, contextlib.suppress(ConnectionResetError):  # never accepted
+        client.settimeout(60.0)
+        assert client.recv(1) == b""
+    assert [str(item.message) for item in caught] == []

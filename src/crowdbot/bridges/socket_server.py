@@ -8,12 +8,12 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, cast
 
 from aiohttp import WSCloseCode, WSMsgType, web
 from aiohttp.http_exceptions import HttpProcessingError
 
-from crowdbot.core import AccessPolicy, InputError, is_loopback
+from crowdbot.core import AccessPolicy, InputError, close_listener, is_loopback
 
 MOST_TEXT = 4 << 20
 """Largest size of a frame [characters or bytes]: a camera image fits."""
@@ -213,10 +213,12 @@ class SocketServer:
         runner = web.AppRunner(app, handle_signals=False, access_log=None, shutdown_timeout=1.0, logger=LOG)
         await runner.setup()
         try:
-            await web.TCPSite(runner, self.host, self.port, reuse_address=True).start()
-            self.port = runner.addresses[0][1]
+            server = cast("web.Server", runner.server)
+            listener = await self._loop.create_server(server, self.host, self.port, reuse_address=True)
+            self.port = listener.sockets[0].getsockname()[1]
             self._ready.set()
             await self._end.wait()
+            await close_listener(listener)
             await asyncio.gather(
                 *(
                     socket.close(code=WSCloseCode.GOING_AWAY, message=b"the run has ended")

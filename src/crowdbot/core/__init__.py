@@ -63,7 +63,7 @@ from .version import source_digest
 from .walls import Walls
 
 if TYPE_CHECKING:
-    from .access import AccessPolicy, is_loopback
+    from .access import AccessPolicy, close_listener, is_loopback
     from .compiling import notify_compiling
     from .kernels import cache_folder, cache_root, is_cold, kernel, prange, read_only
     from .markup.gltf import MOST_PARTS, MOST_TRIANGLES, GltfFile, check_gltf_table, glb_table, read_gltf, table_rows
@@ -141,6 +141,7 @@ __all__ = [
     "check_number",
     "check_parameters",
     "check_programs",
+    "close_listener",
     "dense",
     "did_you_mean",
     "draw_svg",

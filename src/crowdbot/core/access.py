@@ -1,8 +1,10 @@
-"""AccessPolicy: who may use a server of this package: the app, headsets, rosbridge and Foxglove."""
+"""AccessPolicy: who may use a server of this package: the app, headsets, rosbridge and Foxglove; and its end."""
 
 from __future__ import annotations
 
+import asyncio
 import base64
+import contextlib
 import hashlib
 import hmac
 import ipaddress
@@ -128,3 +130,17 @@ def _is_address(host: str) -> bool:
         return bool(ipaddress.ip_address(host))
     except ValueError:
         return False
+
+
+async def close_listener(listener: asyncio.Server) -> None:
+    """Stop to listen; the server gets each connection that was accepted before, and closes it.
+
+    A listener that is closed while a connection is on its way to the server loses it, with its socket open
+    (https://github.com/python/cpython/issues/109564).
+    """
+    for socket in listener.sockets:
+        with contextlib.suppress(NotImplementedError):  # on Windows nothing lies between accepting and the server
+            asyncio.get_running_loop().remove_reader(socket.fileno())
+    for _ in range(2):  # turns of the loop from accepting to the server
+        await asyncio.sleep(0)
+    listener.close()

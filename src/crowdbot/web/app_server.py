@@ -14,7 +14,7 @@ from typing import ClassVar, cast
 
 from aiohttp import WSCloseCode, web
 
-from crowdbot.core import AccessPolicy, CrowdbotError, InputError
+from crowdbot.core import AccessPolicy, CrowdbotError, InputError, close_listener
 
 from .app_session import AppSession
 from .desk import Desk
@@ -128,7 +128,7 @@ class AppServer:
                 yield self
             finally:
                 sweeper.cancel()
-                await _close(listener)
+                await close_listener(listener)
         finally:
             for socket in list(self._sockets):
                 await socket.close(code=WSCloseCode.GOING_AWAY, message=b"the server stops")
@@ -306,17 +306,3 @@ class AppServer:
             loop = asyncio.get_running_loop()
             self.sessions[name] = AppSession(name, space, self.desks, loop, self.limits)
         return self.sessions[name]
-
-
-async def _close(listener: asyncio.Server) -> None:
-    """Stop to listen; the server gets each connection that was accepted before, and closes it.
-
-    A listener that is closed while a connection is on its way to the server loses it, with its socket open
-    (https://github.com/python/cpython/issues/109564).
-    """
-    for socket in listener.sockets:
-        with contextlib.suppress(NotImplementedError):  # on Windows nothing lies between accepting and the server
-            asyncio.get_running_loop().remove_reader(socket.fileno())
-    for _ in range(2):  # turns of the loop from accepting to the server
-        await asyncio.sleep(0)
-    listener.close()

@@ -14,7 +14,7 @@ import struct
 import xmlrpc.client
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 from urllib.parse import urlsplit
 
 import aiohttp
@@ -25,7 +25,7 @@ from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import STATE, InputTopic, OutputTopic, RobotInterface
 from crowdbot.bridges.run_control import QUITTING
 from crowdbot.bridges.simulation_services import PLAIN_SERVICES, PlainService
-from crowdbot.core import InputError, is_loopback
+from crowdbot.core import InputError, close_listener, is_loopback
 from crowdbot.messages import Messages, Ros1Messages
 
 from .actions import STATUS_PERIOD, ActionServer
@@ -142,6 +142,7 @@ class SlaveApi:
         )
         self.port = 0
         self._runner: web.AppRunner | None = None
+        self._listener: asyncio.Server | None = None
 
     async def open(self, host: str) -> None:
         """Listen on a free port, see :attr:`port`."""
@@ -149,11 +150,14 @@ class SlaveApi:
         app.router.add_post("/{path:.*}", self._serve)
         self._runner = web.AppRunner(app, access_log=None, shutdown_timeout=ENDING)
         await self._runner.setup()
-        await web.TCPSite(self._runner, host, 0).start()
-        self.port = int(self._runner.addresses[0][1])
+        server = cast("web.Server", self._runner.server)
+        self._listener = await asyncio.get_running_loop().create_server(server, host, 0)
+        self.port = int(self._listener.sockets[0].getsockname()[1])
 
     async def close(self) -> None:
         """Stop listening."""
+        if self._listener is not None:
+            await close_listener(self._listener)
         if self._runner is not None:
             await self._runner.cleanup()
 
@@ -698,7 +702,7 @@ class Ros1Session:
         if self._telling is not None:
             self._telling.cancel()
         if self._server is not None:
-            self._server.close()
+            await close_listener(self._server)
         for task in list(self._peers):
             task.cancel()
         await asyncio.gather(*self._peers, return_exceptions=True)
