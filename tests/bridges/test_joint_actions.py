@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from bridge_runs import MemoryTransport, Running, serve, wait
+from bridge_runs import MemoryTransport, Running, serve
 from page_runs import FENCE, HOW_TO
 from ros1_master import RosMaster
 from test_joint_trajectory import Sender, lab, trajectory
@@ -35,6 +35,7 @@ from crowdbot.core import InputError
 from crowdbot.messages import Ros1Messages
 from crowdbot.recording import replay
 from crowdbot.trials import parse_trial
+from web.simulator_session import wait_until
 
 ACTION = "/pepper/follow_joint_trajectory"
 
@@ -163,9 +164,9 @@ def test_goals_end_with_the_run_and_at_a_new_beginning():
     memory, answers, seen = MemoryTransport(), [], []
     with Running(lab(600.0), [memory], "free") as running:
         memory.inbox.call(ACTION, goal((300.0, (1.0,))), answers.append, "test", seen.append)
-        wait(lambda: seen)
+        wait_until(lambda: seen)
         memory.call("reset_simulation")
-        wait(lambda: answers)
+        wait_until(lambda: answers)
         assert answers == [goal_end(ABORTED, INVALID_GOAL, "the trial begins again")]
         running.run.stop.asked = True
 

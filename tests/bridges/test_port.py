@@ -14,6 +14,7 @@ from crowdbot.data import McapReader
 from crowdbot.navigation import ExternalNavigator
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial, parse_trial
+from web.simulator_session import wait_until
 
 STEP = 50_000_000
 NOT_SENT = ("/crowdbot/digest", "/robot/cmd_vel")
@@ -37,15 +38,6 @@ class Driver(MemoryTransport):
         super().publish(messages)
         for item in (message for message in messages if message.topic == "/tf"):
             drive(self, 0.4, 0.3 if item.nanoseconds // STEP % 7 < 4 else -0.3)
-
-
-def look_until(reached, looks=30_000):
-    """Wait for a condition, without a clock: on a busy machine a look takes longer."""
-    for _ in range(looks):
-        if reached():
-            return
-        time.sleep(0.01)
-    raise TimeoutError
 
 
 def recorded(path):
@@ -245,9 +237,9 @@ def test_an_external_clock_does_not_go_back(trial):
 
     with Running(trial, [transport], "follow"):
         set_clock(10**9)
-        look_until(lambda: any(message.nanoseconds == 10**9 for message in transport.sent))
+        wait_until(lambda: any(message.nanoseconds == 10**9 for message in transport.sent))
         set_clock(5 * 10**8)
-        look_until(lambda: transport.reports)
+        wait_until(lambda: transport.reports)
     assert "went back to 0.5 s from 1 s" in transport.reports[0][1]
     assert "/clock" not in {item.topic for item in transport.sent}
 
