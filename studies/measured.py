@@ -72,6 +72,7 @@ ENGINE_OF = (
     (r"CollisionFreeSpeed", "collision-free-speed", "JuPedSim"),
     (r"CostModel", "cost-model", "UMANS"),
     (r"JHSFM|PyEnvs", "headed-social-force", "JHSFM, Social-Navigation-PyEnvs"),
+    (r", Vadere", "optimal-steps", "Vadere"),
     (r"Helbing2000", "escape-panic", "CrowdBot simulator"),
     (r"nogroups|pairs_triples|corridor_groups", "group-force", "PySocialForce"),
     (r"Heuristics", "heuristics", "UMANS"),

@@ -18,6 +18,7 @@ from .presets import CrowdPreset, People, crowd_presets
 from .speed_models.anticipation_velocity import AnticipationVelocity
 from .speed_models.collision_free_speed import CollisionFreeSpeed
 from .speed_models.collision_free_speed_v3 import CollisionFreeSpeedV3
+from .speed_models.optimal_steps import OptimalSteps
 from .velocity_obstacles.orca import ORCA
 from .velocity_obstacles.pledestrians import PLEdestrians
 from .velocity_obstacles.vog import VOG
@@ -47,6 +48,7 @@ __all__ = [
     "HeadwayLayer",
     "Heuristics",
     "Mixture",
+    "OptimalSteps",
     "PLEdestrians",
     "People",
     "PowerLaw",

@@ -61,6 +61,7 @@ MODEL_RANGES = (
     ModelRange("group-force", 0.7, FREE, 0.1, PAGE, "PySocialForce tests"),
     ModelRange("headed-social-force", 0.7, FREE, 0.02, PAGE, "contact forces of an explicit step"),
     ModelRange("heuristics", 0.5, JAMS, 0.1, TWO_WAY, UMANS),
+    ModelRange("optimal-steps", 2.0, "bodies overlap within steps", 0.1, PAGE, "about a sixth of the time of a step"),
     ModelRange("orca", 0.7, FREE, 0.25, PAGE, "RVO2, time step of its examples"),
     ModelRange("people", 2.0, "narrow two-way corridors are slower than in experiments", 0.05, HEADWAY, HEADWAY),
     ModelRange("pledestrians", 0.7, FREE, 0.1, PAGE, UMANS),
