@@ -226,6 +226,16 @@ def test_the_original_moves_the_same_way_mostly(reference, name):
     assert np.mean(error < 1e-4) > 0.6
     assert np.mean(error[inside] < 1e-4) > 0.99
     assert same > 0.88
+    # what differs is who reacts, and to whom: those who react to nobody change by speed x time towards the goal
+    way = each(scene.goal) - each(scene.position)
+    change = 1.3 * way / np.linalg.norm(way, axis=-1, keepdims=True) - velocity
+    change *= np.minimum(1.0, 0.13 / np.maximum(np.linalg.norm(change, axis=-1, keepdims=True), 1e-12))
+    own, theirs = (np.abs(each_after - velocity - change).max(axis=-1) > 1e-4 for each_after in (chosen, after))
+    wrong = error > 1e-4
+    shares = [np.mean(wrong & own & ~theirs), np.mean(wrong & ~own & theirs), np.mean(wrong & own & theirs)]
+    print("only ours react {:.1%}, only the original's {:.1%}, both, differently {:.1%}".format(*shares))
+    assert not np.any(wrong & ~own & ~theirs)
+    assert np.all(np.array(shares) < [0.11, 0.06, 0.23])
 
 
 def test_walls_stop_and_are_followed():
