@@ -464,7 +464,7 @@ class Service:
 
 
 @dataclass(frozen=True)
-class Action:
+class JointAction:
     """An action of a robot: programs send a goal, and get feedback and a result.
 
     Fields:
@@ -498,7 +498,7 @@ class RobotInterface:
     outputs: tuple[OutputTopic, ...]
     inputs: tuple[InputTopic, ...]
     services: tuple[Service, ...]
-    actions: tuple[Action, ...] = ()
+    actions: tuple[JointAction, ...] = ()
 
     @classmethod
     def of(cls, trial: Trial, follows_clock: bool = False) -> RobotInterface:
@@ -522,7 +522,7 @@ class RobotInterface:
         )
         taken = {input_topic.name for input_topic in inputs}
         actions = tuple(
-            Action(f"/{robot.name}/follow_joint_trajectory", robot.name)
+            JointAction(f"/{robot.name}/follow_joint_trajectory", robot.name)
             for robot in trial.robots
             if robot.body.model.movable
         )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.bridges.inbox import Inbox, ServiceCall
-from crowdbot.bridges.interface import COMMAND, STATE, Action, InputTopic, OutputTopic
+from crowdbot.bridges.interface import COMMAND, STATE, InputTopic, JointAction, OutputTopic
 from crowdbot.bridges.joint_actions import ABORTED, CANCELED, INVALID_GOAL, REJECTED, SUCCEEDED, goal_end
 from crowdbot.core import InputError
 from crowdbot.messages import Ros1Messages
@@ -56,7 +56,7 @@ class ActionServer:
 
     def __init__(
         self,
-        action: Action,
+        action: JointAction,
         inbox: Inbox,
         codec: Ros1Messages,
         send: Callable[[str, bytes], None],
