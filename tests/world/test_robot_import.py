@@ -253,6 +253,14 @@ def test_wrong_options_are_told(tmp_path, monkeypatch, capsys, words, sentence):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["maker.xacro"]
 
 
+def test_a_file_that_is_no_robot_is_told(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "README.md").write_text("# Robot")
+    assert main(["new", "robot", "README.md"]) == 2
+    assert "README.md is no robot file; its name must end with one of .urdf, .xacro" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["README.md"]
+
+
 FOREIGN = {
     "husky/husky_description/urdf/husky.urdf.xacro": ("skid-steer", 4),
     "jackal/jackal_description/urdf/jackal.urdf.xacro": ("skid-steer", 4),

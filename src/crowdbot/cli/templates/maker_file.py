@@ -54,11 +54,13 @@ def is_robot_file(path: Path) -> bool:
     """Return whether a path is a robot file to convert, not the name of a new robot folder.
 
     Raises:
-        InputError: the path ends as a robot file, but there is none.
+        InputError: the path ends as a robot file, but there is none, or it is another file.
     """
     from crowdbot.core import InputError
 
     if path.suffix.lower() not in ENDINGS:
+        if path.is_file():
+            raise InputError(f"{path} is no robot file; its name must end with one of {', '.join(ENDINGS)}")
         return False
     if not path.is_file():
         raise InputError(f"there is no robot file {path}")
