@@ -181,9 +181,10 @@ def test_a_trial_of_an_experiment_that_is_late_says_so(
     Path("walk.bvh").write_bytes(WALK)
     Path("led.xml").write_text(TEXT.format(2.0), encoding="utf-8")
     Path("experiment.xml").write_text(
-        '<experiment name="visit"><block name="main"><trial name="meet" source="led.xml"/></block></experiment>'
+        '<experiment name="visit"><block name="main"><trial name="meet" source="led.xml"/></block></experiment>',
+        encoding="utf-8",
     )
-    Path("answers.json").write_text("{}")
+    Path("answers.json").write_text("{}", encoding="utf-8")
     words = ["experiment", "run", "experiment.xml", "--participant", "1", "--out", "data", "--answers", "answers.json"]
     assert main([*words, "--mocap", "walk.bvh=guide", "--rate", "1"]) == 0
     text = "warning: trial 1 of 1: the run could not keep up with --rate 1: 0.3 s late"
