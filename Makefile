@@ -34,7 +34,7 @@ demo: $(VENV)/installed
 test: $(VENV)/installed-dev
 	tests/system-packages gate
 	$(MAKE) --jobs=2 --output-sync=target lint doctests
-	$(PYTEST) $(PARALLEL) --dist loadfile --cache-clear -o cache_dir=.pytest_cache/gate tests
+	$(PYTEST) $(PARALLEL) --dist loadfile --durations=30 --cache-clear -o cache_dir=.pytest_cache/gate tests
 
 fix: $(VENV)/installed-dev
 	$(BIN)/python tools/fix.py $(STEPS)

@@ -26,7 +26,7 @@ PASSED, FAILED = 0, 1  # exit statuses of pytest; the others say that it did not
 
 def run_tests(cache: str, words: Sequence[str]) -> int:
     """Run live tests with a cache folder of their own and return the exit status of pytest."""
-    options = ["-m", MARKERS, "--cache-clear", "-o", f"cache_dir={CACHES[cache]}"]
+    options = ["-m", MARKERS, "--durations=30", "--cache-clear", "-o", f"cache_dir={CACHES[cache]}"]
     return subprocess.run([sys.executable, "-m", "pytest", *options, *words], cwd=ROOT, check=False).returncode
 
 

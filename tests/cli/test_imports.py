@@ -49,6 +49,13 @@ def test_help_and_version_do_not_import_numpy(word: str) -> None:
 
 
 @pytest.mark.program
+def test_a_trial_without_tracked_people_loads_no_tracker() -> None:
+    modules = imported("check", "crossing-flows")
+    assert {"crowdbot.trials.robot", "crowdbot.navigation"} <= modules
+    assert modules & {"crowdbot.perception.trackers", "crowdbot.calibration"} == set()
+
+
+@pytest.mark.program
 def test_the_app_starts_without_what_its_results_need() -> None:
     code = "import sys\nfrom crowdbot.vr import *\nfrom crowdbot.web import *\nprint(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

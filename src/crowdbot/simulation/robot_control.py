@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,6 @@ from crowdbot.navigation import (
     TrackBatch,
     copy_memory,
 )
-from crowdbot.perception import CloudClusters, Detector, GlobalNearestNeighbor, LidarClusters, Tracks
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.typing import Bools, Floats, Ints
@@ -35,18 +35,19 @@ from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView
 
+if TYPE_CHECKING:
+    from crowdbot.perception import Detector, GlobalNearestNeighbor, Tracks
+
 PATH_COLUMNS = 9
 """Numbers of the state of a path; see :class:`crowdbot.navigation.Waypoints`."""
 SAME = 1e-6
 """Tolerance of a number of rows."""
 NEVER = -1
 """Tick of the latest order before there is one."""
-PerceivedPeople = tuple[Any, Tracks]
+PerceivedPeople: TypeAlias = "tuple[Any, Tracks]"
 """State of the tracker and its latest tracks, in one environment."""
 RADIUS = 0.25
 """Radius of a tracked person [m], which a scanner does not measure."""
-DETECTORS: tuple[Detector, ...] = (LidarClusters(), CloudClusters())
-TRACKER = GlobalNearestNeighbor()
 
 
 class _Known(NamedTuple):
@@ -439,7 +440,18 @@ def next_waypoints(
 
 def begin_tracking(count: int) -> list[PerceivedPeople]:
     """Return the states of ``count`` environments before the first reading."""
-    return [(TRACKER.begin(), Tracks.none(0.0)) for _ in range(count)]
+    from crowdbot.perception import Tracks
+
+    tracker, _ = _tracking()
+    return [(tracker.begin(), Tracks.none(0.0)) for _ in range(count)]
+
+
+@functools.cache
+def _tracking() -> tuple[GlobalNearestNeighbor, tuple[Detector, ...]]:
+    """Return the tracker and its detectors, which few trials need: they load a tenth of the package."""
+    from crowdbot.perception import CloudClusters, GlobalNearestNeighbor, LidarClusters
+
+    return GlobalNearestNeighbor(), (LidarClusters(), CloudClusters())
 
 
 def track_readings(before: PerceivedPeople, sensors: Sequence[MountedSensor], environment: int, walls: Walls) -> Any:
@@ -451,16 +463,17 @@ def track_readings(before: PerceivedPeople, sensors: Sequence[MountedSensor], en
         environment: the environment.
         walls: map of the stage.
     """
+    tracker, detectors = _tracking()
     state, tracks = before
     last = state.time
     new: list[tuple[float, Detector, Reading]] = []
     for sensor in sensors:
         reading = sensor.reading(environment)
-        detector = next((item for item in DETECTORS if isinstance(reading, item.reads)), None)
+        detector = next((item for item in detectors if isinstance(reading, item.reads)), None)
         if reading is not None and detector is not None and not float(np.max(reading.time)) <= last:
             new.append((float(np.max(reading.time)), detector, reading))
     for time, detector, reading in sorted(new, key=lambda row: row[0]):
-        tracks, state = TRACKER.update(detector.detect(reading, walls), time, state)
+        tracks, state = tracker.update(detector.detect(reading, walls), time, state)
     return state, tracks
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,12 +13,14 @@ from crowdbot.core.outlines import point_to_outline
 from crowdbot.navigation.action import Action
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import Observation
-from crowdbot.perception import ScanForecast, TrackedScene
 from crowdbot.sensors import Scan, planar_pose
 from crowdbot.typing import Floats
 
 from .plan_costs import contact_probability, progress_cost, space_lack
 from .rollout import roll_out
+
+if TYPE_CHECKING:
+    from crowdbot.perception import ScanForecast
 
 STEP = 0.2
 """Time step of plans [s]."""
@@ -83,6 +85,8 @@ class PredictedOccupancyNavigator(Navigator):
         return NOTHING
 
     def act(self, observation: Observation, memory: tuple[float, Any]) -> tuple[Action, tuple[float, Any]]:
+        from crowdbot.perception import TrackedScene
+
         scanned, state = memory
         scan, predictor = observation.scan, TrackedScene()
         if isinstance(scan, Scan) and float(np.max(scan.time)) > scanned:
