@@ -220,17 +220,23 @@ def test_rosbridge_carries_goals_feedback_results_and_cancellations(graph):
     assert kept.canceled  # nobody watches the robot any more
 
 
+def actionlib_server(keep=lambda topic, data: None, monotonic=lambda: 0.0):
+    """Return the server of an action and the inbox that receives its goals."""
+    interface = RobotInterface.of(lab())
+    inbox, action = Inbox(interface), interface.actions[0]
+    server = ActionServer(action, inbox, Ros1Messages(), keep, lambda function, *values: function(*values), monotonic)
+    return server, inbox
+
+
 def test_the_topics_of_actionlib_carry_goals_states_and_cancellations():
-    interface, sent, now = RobotInterface.of(lab()), [], [0.0]
-    inbox, codec = Inbox(interface), Ros1Messages()
+    sent, now = [], [0.0]
+    codec = Ros1Messages()
 
     def keep(topic, data):
         kind = next(item.kind for item in server.outputs if item.name == topic)
         sent.append((topic.rpartition("/")[2], codec.message(data, kind)))
 
-    server = ActionServer(
-        interface.actions[0], inbox, codec, keep, lambda function, *values: function(*values), lambda: now[0]
-    )
+    server, inbox = actionlib_server(keep, lambda: now[0])
     take, cancel = (item.name for item in server.inputs)
     identity = {"stamp": {"sec": 3, "nanosec": 0}, "id": "a"}
     server.receive(take, {"goal_id": identity, "goal": goal((0.5, (0.1,)))}, "ros1")
@@ -254,6 +260,32 @@ def test_the_topics_of_actionlib_carry_goals_states_and_cancellations():
     now[0] = 6.0
     server.tell_states()
     assert sent[-1][1].status_list == []
+
+
+@pytest.mark.parametrize(
+    ("stamps", "identity", "canceled"),
+    [
+        ((0, 0), ("a", 0), [True, False]),  # a time of 0 is none, also where goals have none
+        ((0, 0), ("x", 0), [False, False]),
+        ((0, 0), ("", 0), [True, True]),
+        ((3, 5), ("", 4), [True, False]),
+        ((3, 5), ("", 5), [True, True]),
+        ((3, 5), ("b", 4), [True, True]),
+        ((0, 5), ("b", 0), [False, True]),
+        ((0, 5), ("", 4), [True, False]),
+    ],
+)
+def test_actionlib_cancels_a_goal_by_its_id_and_goals_up_to_a_time(stamps, identity, canceled):
+    """The rules of ``ActionServerBase::cancelCallback`` of actionlib."""
+    server, inbox = actionlib_server()
+    take, cancel = (item.name for item in server.inputs)
+    for name, seconds in zip("ab", stamps, strict=True):
+        goal_id = {"stamp": {"sec": seconds, "nanosec": 0}, "id": name}
+        server.receive(take, {"goal_id": goal_id, "goal": goal((0.5, (0.1,)))}, "ros1")
+    calls = inbox.take_calls()
+    name, seconds = identity
+    server.receive(cancel, {"id": name, "stamp": {"sec": seconds, "nanosec": 0}}, "ros1")
+    assert [call.canceled for call in calls] == canceled
 
 
 def test_the_types_of_ros1_are_those_of_control_msgs():

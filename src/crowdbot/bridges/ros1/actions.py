@@ -130,10 +130,11 @@ class ActionServer:
             finish(goal_end(REJECTED, INVALID_GOAL, str(error)))
 
     def _cancel(self, fields: Mapping[str, Any]) -> None:
-        """Cancel the goal of an id, those up to a time, or all."""
+        """Cancel the goal of an id and those up to a time; all without both. A time of 0 stands for none."""
         name, until = fields["id"], _time(fields["stamp"])
+        everything = not name and not until
         for key, goal in self._goals.items():
-            chosen = key == name or _time(goal.identity["stamp"]) <= until or (not name and not until)
+            chosen = everything or key == name or (until > 0 and _time(goal.identity["stamp"]) <= until)
             if chosen and goal.call is not None and goal.ended is None:
                 goal.call.canceled, goal.state = True, PREEMPTING
         self._inbox.wake()
