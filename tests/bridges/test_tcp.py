@@ -5,16 +5,21 @@ from __future__ import annotations
 import base64
 import io
 import math
+import os
 import socket
+import sys
 
+import numpy as np
 import pytest
 from bridge_runs import Running
 from hypothesis import given
 from hypothesis import strategies as st
+from page_runs import begin, follow_page
 from PIL import Image
+from test_hidden_labels import sent
 
 from crowdbot.bridges import open_transport
-from crowdbot.bridges.challenge_server import ChallengeServer, format_reply, read_request
+from crowdbot.bridges.challenge_server import ChallengeServer, encode_scan, format_reply, read_request
 from crowdbot.core import InputError
 from crowdbot.recording import replay
 from crowdbot.trials import load_trial, parse_trial
@@ -98,6 +103,8 @@ SEEING = """<trial name="seeing" duration="3"><stage><wall points="6,-4 6,4" /><
   <robot name="robot" x="0" y="0"><drive type="differential-drive" max-speed="1"/><goal x="5" y="0"/>
     <navigator type="external"/><sensor name="depth" type="depth-camera" width="8" height="6"/>
     <sensor name="eye" type="rgb-camera" width="32" height="24" rate="10"/>
+    <sensor name="scan" type="lidar2d" rays="5" field-of-view="1.6" range-min="0.1" range-max="9"/>
+    <sensor name="pulses" type="pulsed-lidar2d" rays="3" field-of-view="0.2"/>
   </robot>
 </trial>"""
 
@@ -114,6 +121,52 @@ def test_the_picture_of_a_camera_is_a_jpeg_file_as_the_clients_read_it():
     pictures = [Image.open(io.BytesIO(base64.b64decode(item["camera"]))) for item in (first, later)]
     assert [(picture.format, picture.size) for picture in pictures] == [("JPEG", (32, 24))] * 2
     assert pictures[0].tobytes() != pictures[1].tobytes(), "the robot has moved"
+
+
+@pytest.mark.live
+def test_the_scans_of_the_lasers_are_numbers_of_the_latest_measurement():
+    running, server = run_server(parse_trial(SEEING, place="seeing"))
+    with running:
+        client = Client(server.port)
+        first = client.ask("clock=0.2;vel_cmd=0 0;sim_control=i;")
+        later = client.ask("clock=2.0;vel_cmd=1 0;sim_control=i;")
+        client.socket.close()
+    assert [topic for topic in first if topic.startswith("lidar")] == ["lidar", "lidar_pulses"]
+    stamp, begin, step, *ranges = numbers(first["lidar"])
+    assert 0.0 <= stamp <= 0.2
+    angles = [math.radians(begin + k * step) for k in range(5)]
+    assert angles[2] == pytest.approx(0.0, abs=1e-6)
+    assert angles[-1] - angles[0] == pytest.approx(4 * math.radians(step))
+    assert ranges[2] == pytest.approx(6.0, abs=0.01)  # the wall
+    assert ranges[1] == ranges[3] == pytest.approx(6.0 / math.cos(angles[1]), abs=0.01)
+    assert (ranges[0], ranges[4]) == (math.inf, math.inf)
+    moved = numbers(later["lidar"])
+    assert (1.8 < moved[0] <= 2.0, moved[5] < 5.9) == (True, True)
+    assert len(numbers(first["lidar_pulses"])) == 3 + 3
+
+
+def test_a_scan_has_twelve_bytes_a_beam_at_most_and_says_whom_it_met_to_nobody():
+    labelled, hidden = sent(True)["/robot/scan"], sent(False)["/robot/scan"]
+    assert len(labelled.intensities) == len(labelled.ranges) == 60  # the people of the beams
+    text = encode_scan(labelled)
+    assert text == encode_scan(hidden)
+    assert len(text.split()) == 3 + 60
+    labelled.ranges = np.float32([-1.234567e-38, math.nan, -math.inf] * 20)
+    assert len(encode_scan(labelled)) <= 60 + 12 * 60
+
+
+@pytest.mark.live
+def test_the_client_of_the_page_stops_before_a_wall_and_keeps_a_picture(tmp_path):
+    follow_page("challenge-tcp", tmp_path)
+    running, server = run_server(load_trial(tmp_path / "corridor.xml"))
+    with running:
+        program = begin([sys.executable, "see.py", str(server.port)], tmp_path, os.environ)
+        out, errors = program.communicate(timeout=120)
+        running.end()
+    assert (program.returncode, errors) == (0, "")
+    assert out.startswith("180 beams, the nearest ahead 1.")
+    with Image.open(tmp_path / "last.jpg") as picture:
+        assert (picture.format, picture.size) == ("JPEG", (160, 120))
 
 
 @pytest.mark.live

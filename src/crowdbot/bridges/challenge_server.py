@@ -23,6 +23,7 @@ from crowdbot.recording import StepMessage
 
 LONGEST = 4096
 """Largest size of a request [bytes]."""
+SCAN = "sensor_msgs/msg/LaserScan"
 NO_PICTURE, QUALITY = "JPG", 80
 """Payload of the camera while there is no picture, and quality of pictures."""
 CONTROLS = "inprfls"
@@ -99,6 +100,19 @@ def encode_picture(image: Any) -> str:
     return base64.b64encode(stream.getvalue()).decode()
 
 
+def encode_scan(scan: Any) -> str:
+    """Return a ``sensor_msgs/LaserScan`` as text: time [s], angle of the first beam and to the next [deg], ranges [m].
+
+    Angles count counter-clockwise from the front of the sensor. ``inf`` is nothing within the range, ``-inf`` something
+    nearer than the range, and ``nan`` a failure (REP-117). Nothing says whom a beam has met. A range has at most 12
+    characters, with the space.
+    """
+    stamp = scan.header.stamp
+    angles = (math.degrees(scan.angle_min), math.degrees(scan.angle_increment))
+    head = (stamp.sec + stamp.nanosec / 1e9, *angles)
+    return " ".join([*(f"{value:.9g}" for value in head), *(f"{value:.6g}" for value in scan.ranges.tolist())])
+
+
 def format_reply(number: int, payloads: Mapping[str, str]) -> bytes:
     """Return a reply.
 
@@ -121,9 +135,9 @@ class ChallengeServer:
     """A server for one client that drives in lock step: with ``--clock follow``, each request moves the time.
 
     The reply has the topics ``clock``, ``crowd`` (people: number x y), ``odom`` of the first robot (x y theta and their
-    velocities in the same frame, in m and degrees), ``report`` (contacts) and ``camera`` (the latest picture of the
-    first colour camera of this robot). The laser is not sent. The list of scenarios is the one trial, so that next,
-    previous, first, last and reset all begin it again.
+    velocities in the same frame, in m and degrees), ``report`` (contacts), ``lidar`` (the latest scan of the first
+    laser of this robot; those of others are ``lidar_NAME``) and ``camera`` (the latest picture of its first colour
+    camera). The list of scenarios is the one trial, so that next, previous, first, last and reset all begin it again.
 
     Args:
         port: TCP port; 0: any free one, see :attr:`port` after :meth:`start`.
@@ -149,8 +163,9 @@ class ChallengeServer:
         self._now, self._step, self._number, self._contacts = -1, 1, 0, list[str]()
         self._interface: RobotInterface | None = None
         self._inbox: Inbox | None = None
-        self._camera = ""
+        self._camera, self._lasers = "", dict[str, str]()
         self._picture: Any = None
+        self._scans: dict[str, Any] = {}
 
     @classmethod
     def of(cls, address: str) -> ChallengeServer:
@@ -174,6 +189,7 @@ class ChallengeServer:
         with self._state:
             self._interface, self._inbox, self._payloads, self._now = interface, inbox, {}, -1
             self._camera, self._picture = _colour_image(interface), None
+            self._lasers, self._scans = _lasers(interface), {}
             self._step = round(interface.trial.step * 1e9)
         if self._listener is not None:
             return
@@ -188,7 +204,7 @@ class ChallengeServer:
 
     def wants(self, topic: str) -> bool:
         """Return whether a topic is part of the replies, or with a final slash one that starts with it."""
-        sent = ("/clock", "/people", self._odometry, self._camera, "/crowdbot/contacts")
+        sent = ("/clock", "/people", self._odometry, self._camera, "/crowdbot/contacts", *self._lasers)
         if not topic.endswith("/"):
             return topic in sent
         return any(item == topic[:-1] or item.startswith(topic) for item in sent)
@@ -208,6 +224,8 @@ class ChallengeServer:
             for message in messages:
                 if message.topic == self._camera:
                     self._picture = message.message
+                elif message.topic in self._lasers:
+                    self._scans[message.topic] = message.message
                 elif message.topic in ("/people", self._odometry, "/crowdbot/contacts"):
                     self._keep(message)
             if messages:
@@ -317,7 +335,8 @@ class ChallengeServer:
             self._number += 1
             report, self._contacts = "|".join(self._contacts), []
             picture = NO_PICTURE if self._picture is None else encode_picture(self._picture)
-            payloads = {"clock": "0", **self._payloads, "report": report, "camera": picture}
+            scans = {self._lasers[topic]: encode_scan(scan) for topic, scan in self._scans.items()}
+            payloads = {"clock": "0", **self._payloads, "report": report, "lidar": "", **scans, "camera": picture}
             return format_reply(self._number, payloads)
 
 
@@ -326,6 +345,13 @@ def _colour_image(interface: RobotInterface) -> str:
     robot = interface.trial.robots[0].name
     names = [output.name for output in interface.outputs if output.robot == robot and output.about == "RGBCamera"]
     return next((name for name in names if name.endswith("/image")), "")
+
+
+def _lasers(interface: RobotInterface) -> dict[str, str]:
+    """Return the topics of replies by the topics of the lasers of the first robot: ``lidar``, then ``lidar_NAME``."""
+    robot = interface.trial.robots[0].name
+    topics = [item.name for item in interface.outputs if item.robot == robot and item.kind == SCAN and not item.truth]
+    return {topic: f"lidar_{topic.rpartition('/')[2]}" if k else "lidar" for k, topic in enumerate(topics)}
 
 
 def _planar(message: Any) -> tuple[float, ...]:
