@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import gc
 import json
 import os
 import random
@@ -14,6 +17,7 @@ import sys
 import time
 import urllib.error
 import urllib.request
+import warnings
 import xmlrpc.client
 from importlib.resources import files
 from pathlib import Path
@@ -22,8 +26,8 @@ import pytest
 from bridge_runs import MemoryTransport, Running, wait
 from ros1_master import RosMaster
 
-from crowdbot.bridges import BridgeClock, RobotInterface, open_transport, run_bridge
-from crowdbot.bridges.ros1 import Ros1Node
+from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, open_transport, run_bridge
+from crowdbot.bridges.ros1 import Ros1Node, session
 from crowdbot.bridges.ros1.session import pack_header, unpack_header
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
@@ -72,6 +76,33 @@ def test_a_robot_program_steps_the_simulation_with_its_commands_and_the_digest_i
     assert seen["map"] > 100
     assert seen["now"] == 4.0  # simulated time
     assert seen["laser"][0] > -4.5 + 1.0  # looked up by tf: the robot has moved
+
+
+@pytest.mark.live
+@pytest.mark.parametrize("turns", range(6))
+def test_connections_that_come_while_a_node_closes_its_listeners_are_closed(master, turns, monkeypatch):
+    clients, close = [], session.close_listener
+
+    async def close_late(listener):
+        """Close a listener some turns of its loop after a connection, which it has perhaps not accepted yet."""
+        clients.append(socket.create_connection(listener.sockets[0].getsockname()))
+        for _ in range(turns):
+            await asyncio.sleep(0)
+        await close(listener)
+
+    monkeypatch.setattr(session, "close_listener", close_late)
+    node, interface = Ros1Node(master.url), RobotInterface.of(TRIAL)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        node.start(interface, Inbox(interface))
+        node.stop()
+        gc.collect()
+    assert len(clients) == 2  # TCPROS, and the API of the node
+    for client in clients:
+        with client, contextlib.suppress(ConnectionResetError):  # never accepted
+            client.settimeout(30.0)
+            assert client.recv(1) == b""
+    assert [str(item.message) for item in caught] == []
 
 
 @pytest.mark.sweep
