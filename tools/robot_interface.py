@@ -76,10 +76,33 @@ CLOCKS = """
 No clock changes the result: the same orders at the same instants give the same bytes.
 
 With `commands`, programs answer each instant with one velocity command for each robot, however long they compute. The
-instant is sent to new subscribers, and again if nobody answers, since DDS can lose the first messages. All answers to a
-repeated instant are awaited, so that none of them counts for the next one. A `geometry_msgs/TwistStamped` with the time
-of `/clock` in its header says which instant it answers: copies and late answers are then dropped, whenever they come.
-The instant 0 is the time 0, which means no stamp.
+instant is sent to new subscribers, and again if nobody answers, since DDS can lose the first messages.
+"""
+ANSWERS = """
+### Which instant a velocity command answers
+
+With `paced`, `free`, `step` and `follow`, the newest command that has come before a step counts for this step. With
+`commands`, and for robots with the [navigators `rosbridge` and `ros2`](../how-to/stack-navigator.md), each command
+counts for one instant:
+"""
+INSTANTS = (
+    (
+        "`geometry_msgs/TwistStamped` with a time of `/clock`, over each bridge that has topics",
+        "its stamp. The first one counts; copies and late ones are dropped, whenever they come",
+    ),
+    ("`vel_cmd` of a request over `tcp`", "the `clock` of the latest reply to this client, in the same way"),
+    (
+        "`geometry_msgs/Twist`; `TwistStamped` with the time 0 (so that of the instant 0, too) or with that of another"
+        " clock; the velocities of `naoqi`",
+        "the one at which it comes",
+    ),
+)
+PLAIN_COMMANDS = """
+For the last row, the instant at which a command comes is the one that it answers if the program sends one command for
+each message that it gets, and none by itself. All answers to a repeated instant are awaited, until none has come for
+1.5 times what the first one took, and at least 0.3 s. Nothing is guaranteed for a program that sends plain commands at
+a rate of its own, several for a message, or an answer after that: its runs depend on real time. Such programs stamp
+their commands.
 """
 
 
@@ -134,6 +157,7 @@ def page() -> str:
         + TRANSPORT + "\n" + table(("bridge", "what"), transports)
         + QUALITY + "\n" + table(("class", "reliability", "durability", "depth"), qualities)
         + CLOCKS + "\n" + table(("`--clock`", "meaning"), ((f"`{name}`", about) for name, about in MODES.items()))
+        + ANSWERS + "\n" + table(("command", "instant"), INSTANTS) + PLAIN_COMMANDS
     )  # fmt: skip
 
 

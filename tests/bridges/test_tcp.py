@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import io
 import math
 import os
@@ -11,14 +12,14 @@ import sys
 
 import numpy as np
 import pytest
-from bridge_runs import Running
+from bridge_runs import MemoryTransport, Running, endless_trial
 from hypothesis import given
 from hypothesis import strategies as st
 from page_runs import begin, follow_page
 from PIL import Image
 from test_hidden_labels import sent
 
-from crowdbot.bridges import open_transport
+from crowdbot.bridges import BridgeClock, open_transport, run_bridge
 from crowdbot.bridges.challenge_server import ChallengeServer, encode_scan, format_reply, read_request
 from crowdbot.core import InputError
 from crowdbot.recording import replay
@@ -85,6 +86,36 @@ def test_a_client_drives_in_lock_step(tmp_path):
         again.socket.close()
         running.end()
     assert replay(tmp_path / "episode.mcap").equal
+
+
+def speed_at(nanoseconds):
+    return 0.1 + nanoseconds % 7 / 10
+
+
+class Answers(MemoryTransport):
+    """The command for each instant, in memory."""
+
+    def publish(self, messages):
+        for now in {message.nanoseconds for message in messages if message.topic == "/tf"}:
+            fields = {"linear": {"x": speed_at(now)}, "angular": {"z": 0.0}}
+            self.inbox.receive("/robot/cmd_vel", fields, self.name)
+
+
+@pytest.mark.live
+def test_in_step_with_its_commands_a_command_counts_for_the_instant_of_the_latest_reply():
+    trial, server, asked = endless_trial(4.0), ChallengeServer(0), 0
+    with Running(trial, [server], "commands") as running:
+        client = Client(server.port)
+        answer = client.ask("sim_control=i;")
+        with contextlib.suppress(OSError):  # the run has ended
+            while answer is not None:  # several times for each instant: the next one takes longer than a reply
+                answer = client.ask(f"vel_cmd={speed_at(round(float(answer['clock']) * 1e9))} 0;")
+                asked += 1
+        done = running.end(120.0)
+        client.socket.close()
+    assert asked > done.steps == 80
+    assert running.run.port.inbox.count.stale > 0
+    assert done.digest == run_bridge(trial, [Answers()], 0, None, BridgeClock("free")).digest
 
 
 @pytest.mark.live

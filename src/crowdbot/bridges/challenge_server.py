@@ -161,6 +161,7 @@ class ChallengeServer:
         self._state = threading.Condition()
         self._payloads: dict[str, str] = {}
         self._now, self._step, self._number, self._contacts = -1, 1, 0, list[str]()
+        self._told: int | None = None
         self._interface: RobotInterface | None = None
         self._inbox: Inbox | None = None
         self._camera, self._lasers = "", dict[str, str]()
@@ -273,7 +274,7 @@ class ChallengeServer:
 
     def _talk(self, client: socket.socket) -> None:
         """Answer the requests of a client until it goes or sends what is no request."""
-        text = b""
+        text, self._told = b"", None
         while not self._ended:
             try:
                 part = client.recv(LONGEST)
@@ -297,15 +298,19 @@ class ChallengeServer:
                 return
 
     def _take(self, request: ChallengeRequest) -> None:
-        """Give a request to the simulation and wait until it has come to its time."""
+        """Give a request to the simulation and wait until it has come to its time.
+
+        A command answers the instant of the latest reply: a client has one request on its way.
+        """
         assert self._inbox is not None
         if request.control != "i":
             self._control(request.control)
+            self._told = None
         names = {robot.name for robot in self._interface.trial.robots} if self._interface else set()
         for name, (speed, turn) in request.commands.items():
             if not name or name in names:
                 twist = {"linear": {"x": speed}, "angular": {"z": turn}}
-                self._inbox.receive(f"/{name or self._robot}/cmd_vel", twist, self.name)
+                self._inbox.receive(f"/{name or self._robot}/cmd_vel", twist, self.name, self._told)
         target = None
         if request.clock is not None and any(
             input_topic.name == "/clock" for input_topic in self._inbox.interface.inputs
@@ -332,7 +337,7 @@ class ChallengeServer:
 
     def _reply(self) -> bytes:
         with self._state:
-            self._number += 1
+            self._number, self._told = self._number + 1, self._now if self._now >= 0 else None
             report, self._contacts = "|".join(self._contacts), []
             picture = NO_PICTURE if self._picture is None else encode_picture(self._picture)
             scans = {self._lasers[topic]: encode_scan(scan) for topic, scan in self._scans.items()}

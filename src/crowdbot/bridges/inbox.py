@@ -133,10 +133,10 @@ class Inbox:
         self.commanded: set[str] = set()
         """Robots that have received a velocity command since :meth:`take_orders`."""
         self.in_step = False
-        """Whether each instant waits for its commands. A command with the stamp of an earlier instant is then dropped,
-        and so is a second one with that of the current instant: it answers an instant that was sent twice."""
+        """Whether each instant waits for its commands. A command for an earlier instant is then dropped, and so is a
+        second one for the current instant: it answers an instant that was sent twice."""
         self.stamped: set[str] = set()
-        """Robots whose command has the stamp of the current instant."""
+        """Robots whose command is known to answer the current instant."""
         self._now, self._taken = 0, -1
         self._velocity: dict[str, VelocityOrder] = {}
         self._orders: deque[Request] = deque()
@@ -146,27 +146,30 @@ class Inbox:
         self._closed = False
         self._news = threading.Condition()
 
-    def receive(self, topic: str, fields: Fields, sender: str) -> None:
+    def receive(self, topic: str, fields: Fields, sender: str, instant: int | None = None) -> None:
         """Take a message from another program.
 
         Args:
             topic: an input topic of the interface.
             fields: the message as nested mappings; missing fields are 0.
             sender: name of the transport, the source of the orders.
+            instant: the instant [ns] that a velocity command answers, if the transport knows it; None: that of the
+                stamp in the message, if it has one.
 
         Raises:
             InputError: there is no such input topic, a value is not allowed, or too many orders wait.
         """
         try:
             orders = self._input(topic).requests(fields, sender)
-            stamp = read_stamp(fields) if any(isinstance(order, VelocityOrder) for order in orders) else 0
+            if instant is None and any(isinstance(order, VelocityOrder) for order in orders):
+                instant = read_stamp(fields) or None
         except InputError:
             self.count.refused += 1
             raise
         with self._news:
             self.count.received += 1
             for order in orders:
-                self._add(order, stamp)
+                self._add(order, instant)
             if topic == "/clock":
                 stamp = fields["clock"]
                 self.external_time = int(stamp.get("sec", 0)) * 10**9 + int(stamp.get("nanosec", 0))
@@ -268,11 +271,11 @@ class Inbox:
         self.commanded.clear()
         self.stamped.clear()
 
-    def _is_stale(self, robot: str, stamp: int) -> bool:
+    def _is_stale(self, robot: str, instant: int | None) -> bool:
         """Return whether a command answers another instant, or one that has its command."""
-        if not self.in_step or not 0 < stamp <= self._now:  # no stamp, or that of another clock
+        if not self.in_step or instant is None or not 0 <= instant <= self._now:  # not known, or of another clock
             return False
-        if stamp < self._now or self._taken == self._now or robot in self.stamped:
+        if instant < self._now or self._taken == self._now or robot in self.stamped:
             return True
         self.stamped.add(robot)
         return False
@@ -281,10 +284,10 @@ class Inbox:
         self._arrivals += 1
         self._news.notify_all()
 
-    def _add(self, order: Request, stamp: int = 0) -> None:
+    def _add(self, order: Request, instant: int | None = None) -> None:
         if isinstance(order, VelocityOrder):
             self.count.velocities += 1
-            if self._is_stale(order.robot, stamp):
+            if self._is_stale(order.robot, instant):
                 self.count.stale += 1
                 return
             self._velocity[order.robot] = order
