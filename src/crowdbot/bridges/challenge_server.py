@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
+from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
@@ -206,9 +207,7 @@ class ChallengeServer:
     def wants(self, topic: str) -> bool:
         """Return whether a topic is part of the replies, or with a final slash one that starts with it."""
         sent = ("/clock", "/people", self._odometry, self._camera, "/crowdbot/contacts", *self._lasers)
-        if not topic.endswith("/"):
-            return topic in sent
-        return any(item == topic[:-1] or item.startswith(topic) for item in sent)
+        return is_among(topic, sent)
 
     @property
     def _robot(self) -> str:

@@ -101,6 +101,9 @@ class SocketSession(Protocol):
     def take(self) -> tuple[list[str | bytes], float | None]:
         """Return the next frames, or the time [s] until there are some (None: nothing waits)."""
 
+    def status(self, level: str, text: str) -> None:
+        """Tell the client about a problem, if it wants to know of this level."""
+
     def close(self) -> None:
         """Forget the client."""
 

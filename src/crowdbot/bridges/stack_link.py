@@ -22,7 +22,7 @@ import numpy as np
 from crowdbot.bridges.interface import LATCHED, OutputTopic, RobotInterface
 from crowdbot.bridges.port import BridgePort
 from crowdbot.bridges.run_control import InstantRepeat
-from crowdbot.bridges.transport import Transport, open_transport
+from crowdbot.bridges.transport import Transport, is_among, open_transport
 from crowdbot.core import InputError, check_programs, lock_file, refuse_system
 from crowdbot.messages import MAP, Messages
 from crowdbot.navigation import Ros2Navigator, RosbridgeNavigator
@@ -113,10 +113,7 @@ class StackPort(BridgePort):
 
     def _is_wanted(self, topic: str) -> bool:
         """Return whether the software subscribes a topic that it may have."""
-        place = topic.rstrip("/")
-        names = [output.name for output in self.interface.outputs]
-        offered = place in names or (topic != place and any(name.startswith(topic) for name in names))
-        return offered and super()._is_wanted(topic)
+        return is_among(topic, [output.name for output in self.interface.outputs]) and super()._is_wanted(topic)
 
 
 PATIENCE = 3.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from crowdbot.core import InputError, did_you_mean
@@ -52,6 +52,17 @@ class Transport(Protocol):
 
     def stop(self) -> None:
         """Close the connection; called once."""
+
+
+def is_among(topic: str, names: Iterable[str]) -> bool:
+    """Return whether a topic is one of some names; one that ends in ``/`` if any of them starts with it.
+
+    >>> [is_among(topic, ["/robot/scan"]) for topic in ("/robot/", "/robot/scan/", "/robot/scan", "/robot")]
+    [True, True, True, False]
+    """
+    if not topic.endswith("/"):
+        return topic in names
+    return any(name == topic[:-1] or name.startswith(topic) for name in names)
 
 
 @runtime_checkable

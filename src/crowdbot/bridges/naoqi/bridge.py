@@ -23,6 +23,7 @@ import numpy as np
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
 from crowdbot.bridges.join.join_run import StartAlignment
+from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError, import_optional, refuse_system, wrap_angle
 from crowdbot.messages import points_in
 from crowdbot.recording import StepMessage
@@ -315,10 +316,7 @@ class NaoqiBridge:
 
     def wants(self, topic: str) -> bool:
         """Return whether a topic is written into the memory, or tells where the virtual robot is."""
-        needed = (*self._topics, self._truth)
-        if not topic.endswith("/"):
-            return topic in needed
-        return any(item == topic[:-1] or item.startswith(topic) for item in needed)
+        return is_among(topic, (*self._topics, self._truth))
 
     def stop(self) -> None:
         """Disconnect; the robot rewrites all values within a cycle."""

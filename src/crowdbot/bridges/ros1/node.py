@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
+from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError
 from crowdbot.messages import Ros1Messages
 from crowdbot.recording import StepMessage
@@ -107,12 +108,8 @@ class Ros1Node:
 
     def wants(self, topic: str) -> bool:
         """Return whether a node subscribes a topic, or with a final slash one that starts with it."""
-        if self._session is None:
-            return False
-        found = self._session.publications
-        if not topic.endswith("/"):
-            return topic in found and found[topic].count > 0
-        return any(one.count > 0 for name, one in list(found.items()) if name == topic[:-1] or name.startswith(topic))
+        found = {} if self._session is None else self._session.publications
+        return is_among(topic, [name for name, publication in list(found.items()) if publication.count > 0])
 
     def stop(self) -> None:
         """Unregister and close all connections."""

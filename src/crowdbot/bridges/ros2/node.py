@@ -27,6 +27,7 @@ from crowdbot.bridges.interface import (
     interface_store,
 )
 from crowdbot.bridges.simulation_services import FAILED, PLAIN_SERVICES, PlainService, result
+from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError, MissingExtra, import_optional
 from crowdbot.recording import StepMessage
 
@@ -374,10 +375,8 @@ class Ros2Node:
 
     def wants(self, topic: str) -> bool:
         """Return whether a node subscribes a topic, or with a final slash one that starts with it."""
-        if not topic.endswith("/"):
-            return topic in self._publishers and self._publishers[topic][1].get_subscription_count() > 0
-        names = [publisher for publisher in self._publishers if publisher == topic[:-1] or publisher.startswith(topic)]
-        return any(self._publishers[name][1].get_subscription_count() > 0 for name in names)
+        named = [publisher for name, (_, publisher) in self._publishers.items() if is_among(topic, (name,))]
+        return any(publisher.get_subscription_count() > 0 for publisher in named)
 
     def stop(self) -> None:
         """Stop the node."""
