@@ -346,6 +346,7 @@ def main():
         "odd": odd,
         "deaths": deaths,
         "server_deaths": server_deaths,
+        "faulty": faulty,
         "load": load,
         "ages": ages,
     }[name]

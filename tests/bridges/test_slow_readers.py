@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import json
-import struct
 
 import aiohttp
 import pytest
 from bridge_runs import MemoryTransport, Running, endless_trial
 from partner_runs import LOCAL, ages
 
+from crowdbot.benchmark.speed.bridge_viewer import FOXGLOVE, Foxglove, Rosbridge
 from crowdbot.bridges.foxglove import FoxgloveServer
 from crowdbot.bridges.rosbridge.server import RosbridgeServer
 
@@ -19,56 +18,33 @@ PERIOD, OLDEST = 0.5, 600_000_000
 """Time between two readings [s], and largest age [ns]."""
 
 
-async def rosbridge(socket):
-    """Subscribe the scans; return a function for the time [ns] of a message."""
-    await socket.send_json({"op": "subscribe", "topic": "/robot/scan"})
-
-    def stamp(data):
-        found = json.loads(data)["msg"]["header"]["stamp"]
-        return found["sec"] * 10**9 + found["nanosec"]
-
-    return stamp
-
-
-async def foxglove(socket):
-    """As :func:`rosbridge`."""
-    channels = []
-    while not channels:
-        message = await socket.receive()
-        if message.type == aiohttp.WSMsgType.TEXT:
-            channels = [item for item in message.json().get("channels", ()) if item["topic"] == "/robot/scan"]
-    rows = [{"id": 1, "channelId": channels[0]["id"]}]
-    await socket.send_json({"op": "subscribe", "subscriptions": rows})
-    return lambda data: struct.unpack_from("<Q", data, 5)[0] if isinstance(data, bytes) and data[0] == 1 else None
-
-
-async def socket_ages(port, subscribe, protocols, now):
+async def socket_ages(port, client, protocols, now):
     """Return the simulated ages [ns] of 16 scans that are read one in 0.5 s, after those of the first second."""
     found = []
     async with aiohttp.ClientSession() as http:
         address = f"ws://127.0.0.1:{port}/"
         async with http.ws_connect(address, protocols=protocols, max_msg_size=0) as socket:
-            stamp = await subscribe(socket)
+            reader = client(socket)
+            await reader.subscribe(["/robot/scan"])
             while len(found) < 18:
-                time = stamp((await socket.receive()).data)
-                if time is not None:
-                    found.append(now() - time)
+                data = (await socket.receive()).data
+                if reader.is_message(data):
+                    found.append(now() - reader.stamp(data))
                     await asyncio.sleep(PERIOD)
     return found[2:]
 
 
 @pytest.mark.parametrize(
-    ("kind", "subscribe", "protocols"),
-    [(RosbridgeServer, rosbridge, ()), (FoxgloveServer, foxglove, ("foxglove.sdk.v1",))],
+    ("kind", "client", "protocols"), [(RosbridgeServer, Rosbridge, ()), (FoxgloveServer, Foxglove, (FOXGLOVE,))]
 )
-def test_a_reader_of_two_scans_a_second_gets_the_newest(kind, subscribe, protocols):
+def test_a_reader_of_two_scans_a_second_gets_the_newest(kind, client, protocols):
     server, clock = kind(port=0), MemoryTransport(topics=("/clock",))
     with Running(endless_trial(600.0), [server, clock]):
 
         def now():
             return max(item.nanoseconds for item in clock.sent[-20:])
 
-        found = asyncio.run(socket_ages(server.port, subscribe, protocols, now))
+        found = asyncio.run(socket_ages(server.port, client, protocols, now))
     assert max(found) < OLDEST, found
 
 
