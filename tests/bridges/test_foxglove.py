@@ -15,7 +15,7 @@ from bridge_runs import Running, endless_trial
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from crowdbot.bridges import BridgeClock, RobotInterface, interface_store, message_of, open_transport, run_bridge
+from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, interface_store, message_of, open_transport, run_bridge
 from crowdbot.bridges.foxglove import FoxgloveServer, foxglove_layout
 from crowdbot.core import InputError
 from crowdbot.data import McapReader
@@ -121,6 +121,21 @@ def joined(server):
 
 def names(reader):
     return [(message.topic.topic, message.stamp, bytes(message.data)) for message in reader.messages()]
+
+
+def test_clients_offer_the_subprotocol_of_the_app_or_of_its_predecessor():
+    server = FoxgloveServer(port=0)
+    interface = RobotInterface.of(TRIAL)
+    server.start(interface, Inbox(interface))
+    address = f"ws://127.0.0.1:{server.port}"
+    for offered in ("foxglove.sdk.v1", "foxglove.websocket.v1"):
+        with connect(address, subprotocols=["other", offered], close_timeout=0.2) as ws:
+            assert ws.subprotocol == offered
+            assert json.loads(ws.recv(timeout=20.0))["op"] == "serverInfo"
+    with connect(address, close_timeout=0.2) as ws, pytest.raises(ConnectionClosed) as refused:
+        ws.recv(timeout=20.0)
+    assert refused.value.rcvd.reason == "offer foxglove.sdk.v1 or foxglove.websocket.v1"
+    server.stop()
 
 
 def test_channels_are_the_topics_of_the_trial_and_messages_those_of_the_recorder(tmp_path):

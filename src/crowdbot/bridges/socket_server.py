@@ -147,7 +147,7 @@ class SocketServer:
         host, port: address; port 0: any free one, see :attr:`port` after :meth:`start`.
         access: who may connect.
         session: makes the session of a client; its argument wakes the sender.
-        protocol: subprotocol that clients must offer; empty: none.
+        protocols: subprotocols of which clients must offer one; empty: none.
 
     Raises:
         InputError: there is no such port.
@@ -160,12 +160,12 @@ class SocketServer:
         port: int,
         access: AccessPolicy,
         session: Callable[[Callable[[], None]], SocketSession],
-        protocol: str = "",
+        protocols: Sequence[str] = (),
     ) -> None:
         if not 0 <= port <= 65535:
             raise InputError(f"port {port} must be from 0 to 65535")
         self.name, self.host, self.port, self.access = name, host, port, access
-        self._make, self._protocol = session, protocol
+        self._make, self._protocols = session, protocols
         self._failure: BaseException | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
@@ -240,18 +240,18 @@ class SocketServer:
             return web.Response(status=403, text=f"{problem}\n")
         if len(self._sockets) >= MOST_CLIENTS:
             return web.Response(status=503, text=f"{MOST_CLIENTS} clients are connected\n")
-        protocols = (self._protocol,) * bool(self._protocol)
         socket = web.WebSocketResponse(
             heartbeat=HEARTBEAT,
             max_msg_size=MOST_FRAME,
             compress=False,
             timeout=1.0,
             autoping=False,
-            protocols=protocols,
+            protocols=self._protocols,
         )
         await socket.prepare(request)
-        if self._protocol and socket.ws_protocol != self._protocol:
-            await socket.close(code=WSCloseCode.PROTOCOL_ERROR, message=f"offer {self._protocol}".encode())
+        if self._protocols and socket.ws_protocol not in self._protocols:
+            offer = f"offer {' or '.join(self._protocols)}"
+            await socket.close(code=WSCloseCode.PROTOCOL_ERROR, message=offer.encode())
             return socket
         news, credit = asyncio.Event(), asyncio.Event()
         session = self._make(news.set)

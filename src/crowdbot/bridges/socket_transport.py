@@ -72,8 +72,8 @@ class SocketTransport(Generic[Session]):
 
     name = ""
     usual_port = 0
-    protocol = ""
-    """Subprotocol that clients must offer; empty: none."""
+    protocols: tuple[str, ...] = ()
+    """Subprotocols of which clients must offer one; empty: none."""
     graph: type[SessionGraph]
     """Class of what the clients see."""
     session: Callable[[Any, Callable[[], None]], Session]
@@ -91,7 +91,7 @@ class SocketTransport(Generic[Session]):
         self.host, self.topics = host, None if topics is None else tuple(topics)
         self._graph: SessionGraph | None = None
         port = self.usual_port if port is None else port
-        self._server = SocketServer(self.name, host, port, access, self._session, self.protocol)
+        self._server = SocketServer(self.name, host, port, access, self._session, self.protocols)
         self._steps: deque[Sequence[Any]] = deque(maxlen=MOST_STEPS)
 
     @classmethod

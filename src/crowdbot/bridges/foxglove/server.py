@@ -21,7 +21,9 @@ class FoxgloveServer(SocketTransport[FoxgloveSession]):
     '127.0.0.1'
     """
 
-    name, usual_port, protocol = "foxglove", 8765, "foxglove.sdk.v1"
+    name, usual_port = "foxglove", 8765
+    # the second is that of Foxglove Studio and Lichtblick: the same frames, but clients do not pause the run
+    protocols = ("foxglove.sdk.v1", "foxglove.websocket.v1")
     graph, session = FoxgloveGraph, FoxgloveSession
 
     def wants(self, topic: str) -> bool:
