@@ -1,12 +1,14 @@
 """The experiments tab without a browser: a whole session, pause, repeat, failures, resume; files as on the console."""
 
 import asyncio
+import functools
+import itertools
 import json
 import time
 
 import pytest
 
-from crowdbot.core import EpisodeError, InputError
+from crowdbot.core import EpisodeError, InputError, PacedClock
 from crowdbot.experiments import load_experiment, plan, read_log
 from crowdbot.recording import replay
 from crowdbot.web import AppSession, Workspace
@@ -81,6 +83,18 @@ def test_a_trial_is_paused_continued_and_repeated(desk):
     names = [item.name for item in (desk.session.workspace.folder / state["folder"]).iterdir() if item.is_dir()]
     assert sorted(names) == ["001-alone", "001-alone-attempt-2"]
     assert desk.abort("a test")["phase"] == "aborted"
+
+
+@pytest.mark.parametrize(("seconds", "late"), [(0.02, False), (0.06, True)])
+def test_trials_that_cannot_keep_their_speed_are_told_to_the_operator(seconds, late, desk, monkeypatch):
+    """A step of these trials is 0.1 s; a look at the clock takes ``seconds``, and waiting takes no time."""
+    now = itertools.count(0.0, seconds)
+    clock = functools.partial(PacedClock, monotonic=lambda: next(now), sleep=lambda seconds: None)
+    monkeypatch.setattr("crowdbot.web.experiments.experiment_desk.PacedClock", clock)
+    desk.open("robot-speed", 1, rate=2.0)
+    state = go_through(desk)
+    assert list(state["late"]) == (list(state["outcomes"]) if late else [])
+    assert all(text.startswith("the run could not keep up with speed 2: ") for text in state["late"].values())
 
 
 def test_a_session_is_closed_and_continued(desk):

@@ -217,6 +217,21 @@ def test_a_pause_is_not_made_up_for():
         loop.do(lambda: None)
 
 
+@pytest.mark.parametrize(("seconds", "late"), [(1e-4, False), (0.02, True)])
+def test_a_loop_that_cannot_keep_its_speed_is_late_until_another_speed_is_chosen(seconds, late):
+    """A step of 0.04 s at the speed of 100 has 0.4 ms; each look at the clock takes ``seconds``."""
+    now, seen = itertools.count(0.0, seconds), []
+    loop = PacedLoop(0.04, lambda: len(seen) < 100 and not seen.append(loop.late), monotonic=lambda: next(now))
+    loop.speed = 100.0
+    loop.start()
+    loop.resume()
+    assert loop.ended.wait(60.0)
+    assert (seen[3], loop.late) == (False, late)  # a short delay is caught up
+    loop.speed = 10.0
+    assert not loop.late
+    loop.close(5.0)
+
+
 def test_a_window_that_is_busy_costs_nothing_and_sees_the_end_of_a_pause(tmp_path):
     with simulator(tmp_path) as desk:
         opened(desk)

@@ -333,6 +333,25 @@ def test_a_run_that_ends_as_its_trial_plans_is_not_called_a_timeout(page):
     expect(page.locator(".status-line")).to_contain_text("frontal, seed 1: ended as planned")
 
 
+CROWD = """<trial name="crowd" duration="3600"><stage walkable="-15,-15 15,-15 15,15 -15,15"/><crowd type="orca"/>
+<journey name="east"><direction heading="0"/></journey>
+<spawner count="200" zone="-14,-14 14,-14 14,14 -14,14" journey="east"/></trial>"""
+"""No computer takes 2000 steps of it in a second."""
+
+
+def test_a_run_that_cannot_keep_its_speed_says_so_until_another_speed_is_chosen(page, files):
+    show_from_above(page)
+    (files / "crowd.xml").write_text(CROWD)
+    page.evaluate("crowdbot.connection.call('simulator.open', { name: 'crowd.xml' })")
+    wait(page, f"{VIEW}.status.trial === 'crowd' && {VIEW}.status.time > 1")
+    remark = page.get_by_role("status").filter(has_text="cannot keep up with speed")
+    page.evaluate("crowdbot.connection.call('simulator.speed', { speed: 100 })")
+    expect(remark).to_be_visible()
+    assert "This computer cannot keep up with speed 100x" in remark.text_content()
+    page.get_by_label("Speed relative to real time").select_option("0.1")
+    expect(remark).to_have_count(0)
+
+
 def test_axe_finds_nothing_in_both_themes(page, axe):
     show_from_above(page)
     open_trial(page, "circle-crossing")

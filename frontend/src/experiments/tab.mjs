@@ -30,6 +30,7 @@ class ExperimentsTab {
     this.trial = new Picture(app, { select() {}, place() {} }, "experiments");
     this.screen = h("div", { class: "screen", "aria-live": "polite" });
     this.side = h("aside", { "aria-label": "Operator" });
+    this.late = h("p", { class: "late", role: "status" });
     root.classList.add("experiments", "panes");
     if (this.participant) document.body.classList.add("participant");
     fill(root, this.screen, this.participant ? null : makePane("experiments", "Operator", this.side, "right"));
@@ -46,13 +47,16 @@ class ExperimentsTab {
 
   update(state) {
     const same = JSON.stringify(state) === JSON.stringify(this.state) && this.drawn;
+    const goesOn = [state, this.state].every((one) => one.open && one.phase === "running" && one.index === state.index);
     this.state = state;
     if (same) return;
     this.drawn = true;
     this.form = null;
     if (!state.open) this.showStart();
     else if (state.phase === "screen") this.showScreen();
-    else if (state.phase === "running") this.showTrial();
+    else if (state.phase === "running") {
+      if (!goesOn) this.showTrial();
+    }
     else if (state.phase === "pause") this.showPause();
     else this.showEnd();
     if (!this.participant) this.showOperator();
@@ -143,6 +147,7 @@ class ExperimentsTab {
       h("h2", {}, `${state.experiment}, participant ${state.participant}`),
       h("p", {}, `State: ${PHASES[state.phase]}${state.reason ? ` (${state.reason})` : ""}`),
       h("ol", { class: "steps" }, state.steps.map((one, i) => this.step(one, i))),
+      this.lateness(),
       h("div", { class: "row" }, button("Pause", "pause"), button("Resume", "resume"), button("Repeat the trial", "repeat"), skip),
       h(
         "div",
@@ -155,6 +160,14 @@ class ExperimentsTab {
       h("p", { class: "note" }, `Files: ${state.folder}`),
       streamsNote(state.streams),
     );
+  }
+
+  /** What the operator must know of trials that could not keep up with their speed. */
+  lateness() {
+    const { late, steps } = this.state;
+    const text = Object.entries(late).map(([index, remark]) => `${steps[index].name}: ${remark}.`).join("\n");
+    if (this.late.textContent !== text) this.late.textContent = text;
+    return this.late;
   }
 
   step(one, i) {

@@ -41,7 +41,7 @@ class SimulatorView {
     root.append(
       ...makePane("simulator", "Trials and episodes", this.library.element, "left"),
       h("div", { class: "middle" },
-        this.tools.element, this.picture.element, keepOpen(this.display.legend, "simulator/legend"), this.drive.element, this.transport.element, this.line, this.summary),
+        this.tools.element, this.picture.element, keepOpen(this.display.legend, "simulator/legend"), this.drive.element, this.transport.element, this.late, this.line, this.summary),
       ...makePane("simulator", "Inspector, display and plots", this.side, "right"),
     );
     this._listen();
@@ -115,6 +115,7 @@ class SimulatorView {
     });
     this.plots = new PlotsPanel(app);
     this.episode = new EpisodePanel(app, { transport: this.transport, library: this.library, names: () => this.tools.names });
+    this.late = h("p", { class: "late", role: "status" });
     this.line = h("p", { class: "status-line" });
     this.summary = h("p", { class: "summary", role: "status", "aria-label": "Summary of the picture" });
     this.side = h("aside", { class: "side", "aria-label": "Inspector, display and plots" },
@@ -157,6 +158,7 @@ class SimulatorView {
     this.transport.show(status);
     this.plots.take(status);
     this._showLine();
+    this._showLateness();
     this._remembering ??= setTimeout(() => this._remember(this.status), ADDRESS);
     if (status.problems?.length && status.problems.join() !== before.problems?.join()) say(status.problems.join("\n"), "error");
     if (status.state === "preparing") this.picture.say(preparation(status));
@@ -280,6 +282,13 @@ class SimulatorView {
     parts.push(`${orders} orders`, `${this.fps.toFixed(0)} pictures/s`);
     if (this.latency !== null) parts.push(`latency ${this.latency.toFixed(0)} ms`);
     this.line.textContent = parts.join("  ·  ");
+  }
+
+  /** Says that the run is behind; in one text without numbers, so that a screen reader reads it once. */
+  _showLateness() {
+    const { state, late, speed } = this.status;
+    const text = late && state === "running" ? `This computer cannot keep up with speed ${speedText(speed)}: the run is slower. Choose a lower speed or a simpler trial.` : "";
+    if (this.late.textContent !== text) this.late.textContent = text;
   }
 
   _summarize() {

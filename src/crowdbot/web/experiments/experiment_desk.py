@@ -57,6 +57,7 @@ class ExperimentDesk(Desk):
         super().__init__(session)
         self._runner: SessionRunner | None = None
         self._run: BackgroundRun | None = None
+        self._clocks = dict[int, PacedClock]()  # of the trials, by the indices of their steps
         self._streams: SessionStreams | None = None
         self._rate = 1.0
         self._view: TrialView | None = None
@@ -244,6 +245,7 @@ class ExperimentDesk(Desk):
             streams.close()
             raise
         self._runner, self._streams = runner, streams
+        self._clocks.clear()
 
     def _close(self) -> None:
         self._give_up()
@@ -294,9 +296,10 @@ class ExperimentDesk(Desk):
             runner.end(_failure(error), folder)
             return
         clock = PacedClock(trial.step, rate=1.0 if sources else self._rate)  # people move in real time
+        self._clocks[runner.session.index] = clock
         watchers = [self._view, *runner.sinks]
         self._run = self._view.run = BackgroundRun(trial, seed, folder / "episode.mcap", clock, watchers, sources)
-        threading.Thread(target=self._watch, args=(self._run, folder), daemon=True).start()
+        threading.Thread(target=self._watch, args=(self._run, clock, folder), daemon=True).start()
 
     def _join(self, trial: Trial, folder: Path) -> tuple[Trial, list[OrderSource]]:
         """Let the other desks of the session take part in a trial."""
@@ -312,10 +315,15 @@ class ExperimentDesk(Desk):
         for desk in joined:
             desk.leave_trial()
 
-    def _watch(self, run: BackgroundRun, folder: Path) -> None:
-        """Tell the progress of a trial, and end it in the session."""
+    def _watch(self, run: BackgroundRun, clock: PacedClock, folder: Path) -> None:
+        """Tell the progress of a trial and that it is late, and end it in the session."""
+        told = False
         while not run.wait(0.5):
             self.session.tell("experiments.progress", run.share)
+            if clock.late and not told:
+                told = True
+                with self._lock:
+                    self._tell()
         with self._lock:
             if self._run is run and self._runner is not None:
                 if self._runner.session.phase == "pause":
@@ -360,6 +368,7 @@ class ExperimentDesk(Desk):
             "questions": [question_form(question) for question in screen.questions] if screen else [],  # type: ignore[arg-type]
             "answers": {**now.answers.get(now.index, {}), **(self._draft[1] if self._draft[0] == now.index else {})},
             "outcomes": {str(index): result.outcome for index, result in now.results.items()},
+            "late": {str(index): text for index, one in self._clocks.items() if (text := one.late_remark("speed"))},
             "rate": self._rate,
             "streams": {} if self._streams is None else dataclasses.asdict(self._streams.choice),
         }

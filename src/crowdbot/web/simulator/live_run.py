@@ -173,9 +173,9 @@ class LiveRun:
         recorded = self.beginning is not None and self.beginning.active
         return {
             "kind": self.kind, "state": self._state_word(), "time": time_now, "duration": self.trial.duration,
-            "speed": self.loop.speed, "factor": self.view.factor, "seed": self.seed, "trial": self.trial.name,
-            "outcome": None if run is None else run.outcome, "problems": self.problems, "orders": self.given,
-            "compiling": self.compiling, "recorded": recorded, "values": self.values,
+            "speed": self.loop.speed, "late": self.loop.late, "factor": self.view.factor, "seed": self.seed,
+            "trial": self.trial.name, "outcome": None if run is None else run.outcome, "problems": self.problems,
+            "orders": self.given, "compiling": self.compiling, "recorded": recorded, "values": self.values,
             "metrics": {key: metric for key, metric in self.metrics.items() if math.isfinite(metric)},
         }  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -15,6 +16,8 @@ SPEEDS = (0.1, 100.0)
 """Lowest and highest speed relative to real time; None is as fast as possible."""
 CALL = 120.0
 """Longest time [s] that a caller waits for the thread, which compiles kernels in a first run."""
+RECENT = 5.0
+"""Real time [s] for which the loop counts as late after a delay that it did not catch up."""
 
 
 class PacedLoop:
@@ -30,6 +33,7 @@ class PacedLoop:
         end: called last, in the thread.
         paused: whether the loop waits at its start.
         settle: called in the thread before it waits, at a pause or at the end.
+        monotonic: source of real time [s].
 
     >>> done = []
     >>> loop = PacedLoop(0.01, lambda: len(done) < 2 and not done.append(1))
@@ -49,9 +53,11 @@ class PacedLoop:
         end: Callable[[], None] = lambda: None,
         paused: bool = True,
         settle: Callable[[], None] = lambda: None,
+        monotonic: Callable[[], float] = time.monotonic,
     ) -> None:
         self._advance, self._begin, self._end, self._settle = advance, begin, end, settle
-        self._clock = PacedClock(step, sleep=self._sleep)
+        self._clock, self._monotonic = PacedClock(step, monotonic=monotonic, sleep=self._sleep), monotonic
+        self._delayed = -math.inf  # when the latest delay was given up
         self._changed = threading.Condition()
         self._calls: list[Callable[[], None]] = []
         self._paused, self._closed, self._steps = paused, False, 0
@@ -75,10 +81,15 @@ class PacedLoop:
         if speed is not None and not SPEEDS[0] <= speed <= SPEEDS[1]:
             raise InputError(f"speed = {speed:g}: expected {SPEEDS[0]:g} to {SPEEDS[1]:g}, or null for no limit")
         with self._changed:
-            self._speed = speed
+            self._speed, self._delayed = speed, -math.inf
             if speed is not None:
                 self._clock.rate = speed
             self._changed.notify_all()
+
+    @property
+    def late(self) -> bool:
+        """Whether the steps take longer than the speed allows, so that simulated time stays behind."""
+        return self._monotonic() - self._delayed < RECENT
 
     @property
     def paused(self) -> bool:
@@ -195,17 +206,20 @@ class PacedLoop:
         if not self._advance():
             self.ended.set()
         elif self._speed is not None and not self._paused and not hurries:
+            before = self._clock.late
             self._clock.advance()
+            if self._clock.late > before:
+                self._delayed = self._monotonic()
         else:
             time.sleep(0)
 
     def _sleep(self, seconds: float) -> None:
         """Wait until a step is due, and do what is asked for in the meantime."""
-        until = time.monotonic() + seconds
+        until = self._monotonic() + seconds
         while True:
             self._do_calls()
             with self._changed:
-                rest = until - time.monotonic()
+                rest = until - self._monotonic()
                 if rest <= 0.0 or self._closed or self._paused or self._speed is None:
                     return
                 if not self._calls:

@@ -109,8 +109,8 @@ class Playback:
         now = self.begin_time if math.isnan(self._now) else self._now
         return {
             "kind": self.kind, "name": self.name, "state": self._state_word(), "time": now, "begin": self.begin_time,
-            "duration": self.end_time, "speed": self.loop.speed, "factor": self.view.factor, "seed": episode.seed,
-            "trial": episode.name, "outcome": episode.outcome, "problems": self.problems,
+            "duration": self.end_time, "speed": self.loop.speed, "late": self.loop.late, "factor": self.view.factor,
+            "seed": episode.seed, "trial": episode.name, "outcome": episode.outcome, "problems": self.problems,
             "orders": len(episode.orders), "compiling": self.compiling, "values": self.values,
             "metrics": {key: metric for key, metric in episode.metrics.items() if math.isfinite(metric)},
         }  # fmt: skip
