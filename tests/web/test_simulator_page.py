@@ -225,6 +225,32 @@ def test_a_click_without_a_picture_is_answered(browser, serve, tmp_path):
     page.close()
 
 
+def test_a_picture_without_a_graphics_card_leaves_time_to_the_compiler(browser, serve, tmp_path, monkeypatch):
+    compiled = threading.Event()
+
+    def prepare(closed, compiling):
+        compiling()
+        while not (closed() or compiled.wait(0.05)):
+            pass
+
+    monkeypatch.setattr(live_run, "prepare_kernels", prepare)
+    canvas = f"{VIEW}.picture.canvas"
+    with serve(tmp_path / "files") as server:
+        page = browser.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
+        page.goto(server.url)
+        wait(page, f"{VIEW}?.picture.scene.info().frames > 1")
+        wait(page, f"{canvas}.width < 0.6 * {canvas}.clientWidth")
+        shown = page.evaluate(f"{VIEW}.picture.scene.info().time")
+        wait(page, f"{VIEW}.picture.scene.info().time > {shown}")  # people walk all the same
+        assert status(page, "recorded")
+        assert sum(page.evaluate(f"{VIEW}.picture.scene.rests") for _ in range(100)) > 50
+        compiled.set()
+        state(page, "running")
+        wait(page, f"{canvas}.width === {canvas}.clientWidth")
+        assert not page.evaluate(f"{VIEW}.picture.scene.rests")
+        page.close()
+
+
 def test_a_robot_is_driven_by_keys_and_the_joystick(page, files):
     show_from_above(page)
     open_trial(page, "static-crowd")

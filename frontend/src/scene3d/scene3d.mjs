@@ -13,6 +13,11 @@ import { Views } from "./views.mjs";
 const SUN = new THREE.Vector3(-0.42, -0.55, 1);
 const SHADED = 22;
 const SHADOW_PIXELS = 2048;
+/** While a scene is sparing: time [ms] of a picture without a graphics card, its resolution, and pauses after each. */
+const SLOW = 100;
+const COARSE = 0.5;
+const PAUSE = 3;
+const LONGEST_PAUSE = 1000;
 
 export class Scene3D {
   /**
@@ -33,6 +38,8 @@ export class Scene3D {
     this._marked = new Map();
     this._frames = this._applied = this._work = 0;
     this._empty = false;
+    this._sparing = this._coarse = false;
+    this._timed = this._resting = 0;
     this._theme = "light";
     this._build();
     this.setTheme(this._theme);
@@ -222,6 +229,35 @@ export class Scene3D {
     this._renderer.render(this._scene, this._views.camera);
     this._frames += 1;
     this._spent = performance.now() - begin;
+    if (this._sparing) this._time(begin);
+  }
+
+  /**
+   * Whether others need the processor, such as a compiler. Where no graphics card draws, pictures are then coarse, and
+   * "rests" asks for pauses between them.
+   */
+  set sparing(sparing) {
+    if (sparing === this._sparing) return;
+    this._sparing = sparing;
+    this._coarse = false;
+    this._timed = this._resting = 0;
+    this._forgetTime();
+  }
+
+  /** Whether no picture may be drawn now: the one before is not finished, or a pause follows it. */
+  get rests() {
+    if (!this._sparing) return false;
+    const now = performance.now();
+    if (this._fence) {
+      const gl = this._renderer.getContext();
+      if (gl.getSyncParameter(this._fence, gl.SYNC_STATUS) !== gl.SIGNALED) return true;
+      this._forgetTime();
+      const cost = now - this._begun;
+      this._coarse ||= this._timed > 0 && cost > SLOW; // the first picture compiles shaders
+      this._timed += 1;
+      if (this._coarse) this._resting = now + Math.min(LONGEST_PAUSE, PAUSE * cost);
+    }
+    return now < this._resting;
   }
 
   /** Renderer and scene, for who draws with a camera of his own, such as a headset. */
@@ -293,6 +329,20 @@ export class Scene3D {
     for (const one of Object.values(this._overlays)) this._scene.add(one.object);
   }
 
+  /** Notes when a picture began, and how its end is noticed: its calls return before it is drawn. */
+  _time(begin) {
+    const gl = this._renderer.getContext();
+    this._forgetTime();
+    this._begun = begin;
+    this._fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+  }
+
+  _forgetTime() {
+    if (this._fence) this._renderer.getContext().deleteSync(this._fence);
+    this._fence = null;
+  }
+
   /** Id of the person or robot in whose head the camera is, or null. */
   _hidden(kind) {
     const one = this._views.head(this.state);
@@ -356,7 +406,7 @@ export class Scene3D {
 
   _resize() {
     if (this._renderer.xr.isPresenting) return;
-    const ratio = Math.min(2, devicePixelRatio || 1);
+    const ratio = (this._coarse ? COARSE : 1) * Math.min(2, devicePixelRatio || 1);
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height || (width === this._width && height === this._height && ratio === this._ratio)) return;
     Object.assign(this, { _width: width, _height: height, _ratio: ratio });

@@ -27,6 +27,7 @@ export class Picture {
     this._waiting = null;
     this._loading = null;
     this._awake = 0;
+    this._sparing = false;
     this._shown = true;
     this._seen = this.visible;
     this.place = h("div", { class: "stage-place" });
@@ -108,6 +109,12 @@ export class Picture {
     else this._finish();
   }
 
+  /** Whether the picture leaves the processor to others, such as a compiler, where no graphics card draws. */
+  set sparing(sparing) {
+    this._sparing = this.scene.sparing = sparing;
+    this.wake();
+  }
+
   /** Draws for a while, because the camera moves. */
   wake() {
     this._awake = performance.now() + AWAKE;
@@ -146,6 +153,7 @@ export class Picture {
       return this._make("2d");
     }
     this.scene.setTheme(this.app.theme);
+    this.scene.sparing = this._sparing;
     this.scene.measure(this._measured);
     this._listenCanvas();
     return this.wake();
@@ -191,6 +199,7 @@ export class Picture {
     if (!this._shown || !this.scene || !this.canvas.clientWidth) return this._finish();
     if (this._preview) drawPreview(this.overlay, this._preview, this.app.theme);
     if (this._waiting === null && !this.motion.moving && performance.now() > this._awake) return undefined;
+    if (this.scene.rests) return undefined; // a frame that waits is drawn afterwards
     if (this._waiting !== null) this.frames += 1;
     this._apply();
     if (this.scene.state.frame) this.scene.render();

@@ -161,6 +161,7 @@ class SimulatorView {
     this._showLateness();
     this._remembering ??= setTimeout(() => this._remember(this.status), ADDRESS);
     if (status.problems?.length && status.problems.join() !== before.problems?.join()) say(status.problems.join("\n"), "error");
+    if (status.state === "preparing" || before.state === "preparing") this.picture.sparing = status.state === "preparing" && status.compiling;
     if (status.state === "preparing") this.picture.say(preparation(status));
     else if (before.state === "preparing" || status.state === "failed") this.picture.say("");
     // the recorded beginning has the same description as the run, so that nothing else asks for the people of the run
