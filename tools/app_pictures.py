@@ -30,8 +30,8 @@ CAMERAS = """<trial name="wheelchair-hall" duration="20" world="physics">
   <crowd type="orca"/>
   <spawner count="10" zone="1,-3 6,-3 6,3 1,3" goal="-6,-3 -5,-3 -5,3 -6,3"/>
   <robot name="wheelchair" type="wheelchair" x="-4" y="0"><goal x="7" y="0"/><navigator type="orca"/>
-    <sensor name="colour" type="rgb-camera" x="0.4" z="1.1" pitch="0.15" field-of-view="1.2" rate="10"/>
-    <sensor name="depth" type="depth-camera" x="0.4" z="1.1" rate="10"/>
+    <sensor name="eye" type="rgb-camera" x="0.4" z="1.1" pitch="0.15" field-of-view="1.2" rate="10"/>
+    <sensor name="range" type="depth-camera" x="0.4" z="1.1" rate="10"/>
   </robot>
 </trial>"""
 """The trial of the picture of camera images."""
@@ -132,8 +132,8 @@ def cameras(page: Page) -> None:
     page.get_by_label("View", exact=True).select_option("2d")  # in space only for the picture
     trial = FilePayload(name="wheelchair-hall.xml", mimeType="text/xml", buffer=CAMERAS.encode())
     page.locator(".library input[type=file]").set_input_files(trial)
-    for name in ("colour", "depth"):
-        page.get_by_role("checkbox", name=f"wheelchair / {name}: {name}").check(timeout=LONG)
+    for name in ("eye: colour", "range: depth"):
+        page.get_by_role("checkbox", name=f"wheelchair / {name}").check(timeout=LONG)
     page.wait_for_function("() => crowdbot.tab('simulator').status.time > 2.4", timeout=LONG)
     page.get_by_role("button", name="Pause").click()
     page.get_by_label("View", exact=True).select_option("3d")
@@ -194,6 +194,7 @@ def take(name: str, browser: Any, options: argparse.Namespace) -> None:
         page.goto(f"{url}#tab={name}&theme=light")
         page.wait_for_selector(".connection:has-text('connected')")
         PICTURES[name](page)
+        page.evaluate("document.activeElement.blur()")  # a mark of the focus is no part of a picture
         if options.review is not None:
             review(page, options.review, name)
         else:

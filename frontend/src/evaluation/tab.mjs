@@ -9,6 +9,9 @@ import { makeStrips } from "./strips.mjs";
 
 const GOOD = new Set(["success", "finished"]);
 
+const INTERVALS = "In brackets: 95 % confidence intervals over the seeds.";
+const COMPARISONS = "Runs with the same seed are compared in pairs; p-values are corrected for all comparisons (Holm).";
+
 class EvaluationTab {
   constructor(root, app) {
     Object.assign(this, { app, table: null, chosen: null, onlyFailures: true, statistic: 3 });
@@ -180,6 +183,7 @@ class EvaluationTab {
       robotFacts(table.robots, table.remarks, true),
       this.rows(),
       h("ul", { class: "comparisons" }, table.comparisons.map((one) => h("li", {}, one))),
+      h("p", { class: "note" }, table.comparisons.length ? `${INTERVALS} ${COMPARISONS}` : INTERVALS),
       h("div", { class: "row" }, field("Picture of each run by", choice), table.report ? h("a", { href: report, target: "_blank", rel: "noopener" }, "Report") : null),
       makeStrips(table.cells, this.statistic, table.titles[this.statistic], (cell, seed) => this.watch(cell, seed)),
       h("p", { class: "note" }, "Circle: success. Cross: collision, fall or error. Square: timeout or planned end. Choose a mark to watch the run."),

@@ -52,20 +52,22 @@ function row(store, one, notes) {
   const shown = h("input", { type: "checkbox", checked: !store.hidden.has(one.key), "aria-label": `Draw ${one.label}` });
   shown.addEventListener("change", () => store.hide(one.key, !shown.checked));
   notes.set(one.key, h("small", {}, words.join("; ") || "not run yet"));
+  const remarks = [...new Set([clean?.note, degraded?.note].filter(Boolean))];
   return h(
     "li",
     {},
     shown,
     sample(one.slot),
-    h("span", { class: "name", title: [one.name, ...words].join("\n") }, one.label, notes.get(one.key)),
+    h("span", { class: "name", title: [one.name, ...words, ...remarks].join("\n") }, one.label, notes.get(one.key)),
     one.calibrated && h("button", { type: "button", "aria-label": `Fit… of ${one.label}`, onclick: () => openParameters(store, one.key) }, "Fit…"),
     h("button", { type: "button", "aria-label": `Remove ${one.label}`, onclick: () => store.call("remove", { key: one.key }) }, "×"),
+    remarks.map((text) => h("small", { class: "remark" }, text)),
   );
 }
 
-function stateOf({ state, done, windows, problem, note, score }) {
-  const best = score?.samples > 1 && ` (best of ${score.samples})`;
-  if (state === "done") return [`ADE ${score.ade.toFixed(3)} ${score.units}${best || ""}`, note].filter(Boolean).join("; ");
+function stateOf({ state, done, windows, problem, score }) {
+  const best = score?.samples > 1 ? ` (best of ${score.samples})` : "";
+  if (state === "done") return `ADE ${score.ade.toFixed(3)} ${score.units}${best}`;
   if (state === "failed") return problem;
   return state === "waits" ? "waits" : `${state === "runs" ? "running" : state}: ${done} of ${windows} frames`;
 }

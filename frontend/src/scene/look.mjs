@@ -19,14 +19,16 @@ const ZONES = {
 };
 /** Colours of layers that have one colour. */
 const COLOURS = { scans: "scan", clouds: "cloud", ranges: "cone", forces: "force", goals: "goal" };
+/** Layers of points. */
+const DOTTED = new Set(["scans", "clouds"]);
 
-/** Rows of the legend for zones that a scene has, and for visible layers of one colour: [{color, text, width}]. */
+/** Rows of the legend for zones that a scene has, and for visible layers of one colour: [{color, text, width, dotted?}]. */
 export function sceneLegend(description, layers, look) {
   const visible = layers.filter((one) => one.visible);
   const zones = visible.some((one) => one.name === "zones") ? description.zones.map((one) => one.kind) : null;
   const rows = Object.keys(ZONES).filter((kind) => zones?.includes(kind)).map((kind) => ({ color: look[kind], text: ZONES[kind], width: 10 }));
   if (zones && description.robots.some((one) => !one.ghost)) rows.push({ color: look.robotGoal, text: "Goal of a robot", width: 3 });
-  return [...rows, ...visible.flatMap(({ name, title }) => (COLOURS[name] ? [{ color: look[COLOURS[name]], text: title, width: 3 }] : []))];
+  return [...rows, ...visible.flatMap(({ name, title }) => (COLOURS[name] ? [{ color: look[COLOURS[name]], text: title, width: 3, dotted: DOTTED.has(name) }] : []))];
 }
 
 /** Layers that a picture draws from the description and every frame; the others are asked for by name. */

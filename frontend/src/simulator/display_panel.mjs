@@ -73,9 +73,9 @@ export class DisplayPanel {
     rows.unshift(...own);
     this.paths.hidden = !shown.includes("paths");
     this.legend.hidden = !rows.length;
-    fill(this.colours, rows.map(({ color, text, width }) => {
+    fill(this.colours, rows.map(({ color, text, width, dotted }) => {
       const mark = h("i", { "aria-hidden": "true" });
-      mark.style.background = color;
+      mark.style.background = dotted ? `repeating-linear-gradient(90deg, ${color} 0 3px, transparent 3px 6px)` : color;
       mark.style.height = `${width}px`;
       return h("li", {}, mark, text);
     }));

@@ -280,7 +280,8 @@ class SimulatorView {
     const parts = [`${trial}, seed ${seed}: ${word}`, `${(time ?? 0).toFixed(1)} s`, `speed ${speedText(speed)}`];
     if (state === "running" && factor) parts.push(`real-time factor ${factor.toFixed(2)}`);
     if (values?.people !== undefined) parts.push(`${values.people} people`);
-    parts.push(`${orders} orders`, `${this.fps.toFixed(0)} pictures/s`);
+    parts.push(`${orders} orders`);
+    if (state === "running") parts.push(`${this.fps.toFixed(0)} pictures/s`);
     if (this.latency !== null) parts.push(`latency ${this.latency.toFixed(0)} ms`);
     this.line.textContent = parts.join("  ·  ");
   }

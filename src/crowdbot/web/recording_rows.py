@@ -55,7 +55,8 @@ def recording_rows(space: Workspace, agents: str = "pedestrians") -> list[Row]:
     defaults = {"time_base": FILE_OPTIONS["time_base"].default, "agents": agents}
     rows = []
     for name, option in FILE_OPTIONS.items():
-        row: Row = {"name": name, "label": option.about[:1].upper() + option.about[1:]}
+        about = option.about.partition(", see `")[0]  # the form has the list that the command names
+        row: Row = {"name": name, "label": about[:1].upper() + about[1:]}
         if name in choices:
             row |= {"kind": "choice", "value": defaults.get(name, ""), "choices": choices[name]}
         elif option.number:
