@@ -351,6 +351,21 @@ def test_trials_stand_in_groups_with_pictures_of_people(page, files):
     wait(page, f"{VIEW}.status.trial === 'crowdnav-circle-5'")
 
 
+def test_the_summary_of_the_picture_is_that_of_the_instant_of_a_pause(page):
+    show_from_above(page)
+    open_trial(page, "circle-crossing")
+    page.get_by_role("button", name="Pause").click()
+    state(page, "paused")
+    for _ in range(2):
+        before = status(page, "time")
+        page.get_by_role("button", name="Step", exact=True).click()
+        wait(page, f"{VIEW}.status.time > {before}")
+        wait(
+            page,
+            f"document.querySelector('.summary').textContent.startsWith(`At ${{{VIEW}.status.time.toFixed(1)}} s: `)",
+        )
+
+
 def test_a_run_that_ends_as_its_trial_plans_is_not_called_a_timeout(page):
     show_from_above(page)
     values = {"duration": "1", "end/goal": "false"}

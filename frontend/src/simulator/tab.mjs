@@ -170,6 +170,7 @@ class SimulatorView {
       this.picture.preview(null);
       this._drop("the run failed");
     } else if (status.state !== "preparing") for (const action of this._pending.splice(0)) action();
+    if (status.state === "paused") this._summarize();
     if (status.state === "ended" && before.state !== "ended" && this.drive.subject) this.drive.forget();
     if (this._readEpisode && status.kind === "episode" && !["preparing", "failed"].includes(status.state)) {
       this._readEpisode = false;
@@ -295,9 +296,10 @@ class SimulatorView {
 
   _summarize() {
     const { state, values, time } = this.status;
-    if (!values || state !== "running" || values.people === undefined || this.picture.element.offsetParent === null) return;
+    if (!values || !["running", "paused"].includes(state) || values.people === undefined || this.picture.element.offsetParent === null) return;
     const near = values.clearance === null || values.clearance === undefined ? "" : `; the nearest person is ${values.clearance.toFixed(1)} m from the robot`;
-    this.summary.textContent = `At ${time.toFixed(0)} s: ${values.people} people${near}.`;
+    const text = `At ${time.toFixed(1)} s: ${values.people} people${near}.`;
+    if (this.summary.textContent !== text) this.summary.textContent = text;
   }
 
   _keys() {
