@@ -51,6 +51,18 @@ CORRIDOR = """<trial name="corridor" duration="600" step="{step}">
 <robot x="-10" y="0"><goal x="10" y="0"/><drive type="differential-drive"/><navigator type="orca"/>
 <sensor type="lidar2d" rays="1080" range-max="25"/></robot><end collision="false" goal="false"/></trial>"""
 """People who walk both ways and come in again at the other end."""
+HALL = """<trial name="hall" duration="600" step="0.1"><stage walkable="-8,-4 8,-4 8,4 -8,4"/>
+<crowd type="orca"/><contact/>
+<journey name="rounds" then="again"><zone points="-7,-3 -5,-3 -5,3 -7,3" aim="random"/>
+<zone points="5,-3 7,-3 7,3 5,3" aim="random"/></journey>
+<spawner count="10" zone="-6,-3 6,-3 6,3 -6,3" journey="rounds"/>
+<robot x="-6" y="0"><goal x="6" y="0"/><drive type="differential-drive"/><navigator type="orca"/>
+<sensor name="colour" type="rgb-camera" z="1.2" width="160" height="120" rate="2"/>
+<sensor name="depth" type="depth-camera" z="1.2" width="160" height="120" rate="2"/>
+</robot><end collision="false" goal="false"/></trial>"""
+"""The same people walk to and fro, seen by the cameras of a robot."""
+IMAGES = ("robot/colour/color", "robot/depth/depth")
+"""Names of the images of the cameras in the page."""
 STATES = 60.0
 """States a second that a window may get."""
 SECONDS = 20.0
@@ -72,6 +84,25 @@ SOUGHT = """async (seconds) => {
     const begin = performance.now();
     await connection.call("simulator.seek", { time });
     while (Math.abs((view.picture.newest?.time ?? -1) - time) > 0.06)
+      await new Promise((resolve) => setTimeout(resolve, 1));
+    times.push((performance.now() - begin) / 1000);
+  }
+  return times;
+}"""
+OPENED = """async (name) => {
+  const view = crowdbot.tab("simulator"), { connection } = crowdbot, begin = performance.now();
+  await connection.call("simulator.open_episode", { name });
+  while (!(view.status.name === name && view.status.state === "paused" && view.picture.newest))
+    await new Promise((resolve) => setTimeout(resolve, 1));
+  return (performance.now() - begin) / 1000;
+}"""
+IMAGES_SOUGHT = """async ([seconds, names]) => {
+  const view = crowdbot.tab("simulator"), { connection } = crowdbot, times = [];
+  const drawn = () => names.map((name) => view.display.images.figures.figure(name)?.drawn ?? 0);
+  for (const time of seconds) {
+    const before = drawn(), begin = performance.now();
+    await connection.call("simulator.seek", { time });
+    while (Math.abs((view.picture.newest?.time ?? -1) - time) > 0.06 || drawn().some((count, k) => count === before[k]))
       await new Promise((resolve) => setTimeout(resolve, 1));
     times.push((performance.now() - begin) / 1000);
   }
@@ -217,13 +248,61 @@ def seek(browser: Browser, folder: Path) -> list[Time]:
     (folder / "corridor.xml").write_text(corridor(40, "0.05"), encoding="utf-8")
     done = record(load_trial(folder / "corridor.xml"), 1, folder / "long.mcap")
     chance = random.Random(1)  # noqa: S311 - instants of a measurement
-    with program(folder, "--open", str(folder / "long.mcap")) as (address, _, _), window(browser, address) as page:
+    with (
+        program(folder, "--open", str(folder / "long.mcap")) as (address, process, _),
+        window(browser, address) as page,
+    ):
         page.get_by_label("View", exact=True).select_option("2d")
         page.wait_for_function("() => crowdbot.tab('simulator').picture.newest !== null")
         wishes = [round(chance.uniform(0.0, done.end) / 0.1) * 0.1 for _ in range(50)]
         times = page.evaluate(SOUGHT, wishes)
+        peak = peak_memory(process)
     how = f"longest of {len(times)} random instants of {done.end:g} s, median {statistics.median(times):.3f} s"
-    return [Time("seek in a 10-minute episode", max(times), "s", 0.3, how)]
+    return [
+        Time("seek in a 10-minute episode", max(times), "s", 0.3, how),
+        Time(
+            "the same, largest memory of the server",
+            peak,
+            "MB",
+            500.0,
+            "each of 40 people gets a new id at each portal",
+        ),
+    ]
+
+
+def camera_episode(browser: Browser, folder: Path) -> list[Time]:
+    """Open a 10-minute episode with two cameras, and jump in it while both images are shown."""
+    folder.mkdir(parents=True)
+    (folder / "hall.xml").write_text(HALL, encoding="utf-8")
+    record(load_trial(folder / "hall.xml", duration="1"), 1, folder / "short.mcap")
+    done = record(load_trial(folder / "hall.xml"), 1, folder / "long.mcap")
+    size = (folder / "long.mcap").stat().st_size / 1e6
+    chance = random.Random(1)  # noqa: S311 - instants of a measurement
+    # the short episode first, so that no kernel is compiled for the long one
+    with (
+        program(folder, "--open", str(folder / "short.mcap")) as (address, process, _),
+        window(browser, address) as page,
+    ):
+        page.get_by_label("View", exact=True).select_option("2d")
+        page.wait_for_function("() => crowdbot.tab('simulator').picture.newest !== null")
+        before, used = peak_memory(process), processor_time(process)
+        opened = page.evaluate(OPENED, "long.mcap")
+        used = processor_time(process) - used
+        page.evaluate("(names) => crowdbot.connection.call('simulator.cameras', { names })", list(IMAGES))
+        page.wait_for_function("() => document.querySelectorAll('.camera-image').length === 2")
+        wishes = [round(chance.uniform(0.0, done.end) / 0.1) * 0.1 for _ in range(50)]
+        times = page.evaluate(IMAGES_SOUGHT, [wishes, list(IMAGES)])
+        peak = peak_memory(process)
+    what = "10-minute episode with two cameras"
+    load = f"at a load average of {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores"
+    how = f"{size:.0f} MB, 2 x 1200 images of 160 x 120 pixels, {done.end:g} s, 10 people"
+    sought = f"longest of {len(times)} random instants, median {statistics.median(times):.3f} s"
+    return [
+        Time(f"opening of a {what}", opened, "s", 5.0, f"to its first picture, {load}; {how}"),
+        Time("the same, processor time of the server", used, "s", None, "until then"),
+        Time("the same, largest memory of the server", peak, "MB", 500.0, f"with the jumps; {before:.0f} MB before"),
+        Time(f"seek in a {what}", max(times), "s", 0.3, f"to the picture and both images; {sought}"),
+    ]
 
 
 def page_work(browser: Browser, folder: Path) -> list[Time]:
@@ -294,6 +373,14 @@ def memory(process: int) -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
+def peak_memory(process: int) -> float:
+    """Return the largest memory that a process has had [MB]."""
+    text = Path(f"/proc/{process}/status").read_text(encoding="utf-8")
+    found = re.search(r"VmHWM:\s+(\d+) kB", text)
+    assert found is not None
+    return int(found[1]) * 1024 / 1e6
+
+
 async def sleep_beside(address: str, process: int) -> tuple[int, float, float]:
     """Open a window that confirms nothing and then reads nothing.
 
@@ -355,6 +442,7 @@ ROWS: dict[str, Callable[[Browser, Path], list[Time]]] = {
     "compilation": compilation,
     "edited-wall": edited_wall,
     "seek": seek,
+    "camera-episode": camera_episode,
     "page": page_work,
     "server": server,
     "slow-window": slow_window,
