@@ -59,8 +59,15 @@ class MjcfModel(NamedTuple):
     bearing: frozenset[str] = frozenset()
 
     def load(self, timestep: float) -> Any:
-        """Return the ``mujoco.MjModel``."""
-        model = engine().MjModel.from_xml_string(format_xml(self.root), self.files)
+        """Return the ``mujoco.MjModel``.
+
+        Raises:
+            InputError: MuJoCo refuses the model.
+        """
+        try:
+            model = engine().MjModel.from_xml_string(format_xml(self.root), self.files)
+        except ValueError as error:
+            raise InputError(f"MuJoCo refuses the world: {' '.join(str(error).split())[:300]}") from None
         model.opt.timestep = timestep
         _steadied(model, self.wheels)
         _lean(model)

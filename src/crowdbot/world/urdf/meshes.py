@@ -34,6 +34,8 @@ RESOLUTION = 20_000
 """Number of voxels of the convex decomposition."""
 LOOSE = 1.3
 """If the convex hull exceeds the volume of the mesh by this factor, the mesh is decomposed into convex pieces."""
+FLAT = 1e-5
+"""Smallest thickness of a convex hull by its largest coordinate: MuJoCo holds points in single precision."""
 Pieces = tuple[ConvexPiece, ...]
 MOST_CACHE_BYTES = 50_000_000
 
@@ -118,7 +120,7 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
     loose = around > LOOSE * max(volume, 1e-12)
     if method == "hull" or (method == "auto" and not loose):
         return dataclasses.replace(mesh, pieces=(hull,)), ""
-    pieces = load_or_compute_pieces(mesh, f"V-HACD {MOST_PIECES} {RESOLUTION}", _decompose)
+    pieces = load_or_compute_pieces(mesh, f"V-HACD {MOST_PIECES} {RESOLUTION}, flat pieces thickened", _decompose)
     if pieces:
         return dataclasses.replace(mesh, pieces=pieces), ""
     return (
@@ -263,11 +265,18 @@ def _hull(vertices: Any) -> ConvexPiece:
     from scipy.spatial import ConvexHull, QhullError
 
     points = np.unique(np.asarray(vertices, dtype=np.float64), axis=0)
-    try:
-        return _orient_faces(points, ConvexHull(points))
-    except (QhullError, ValueError):
-        thick = np.concatenate([points + shift for shift in 0.0005 * np.vstack([np.eye(3), -np.eye(3)])])
-        return _orient_faces(thick, ConvexHull(thick))
+    if not _is_flat(points):
+        with contextlib.suppress(QhullError, ValueError):
+            return _orient_faces(points, ConvexHull(points))
+    thick = np.concatenate([points + shift for shift in 0.0005 * np.vstack([np.eye(3), -np.eye(3)])])
+    return _orient_faces(thick, ConvexHull(thick))
+
+
+def _is_flat(points: Any) -> bool:
+    """Return whether points lie in a plane, to rounding: a slanted plate of a file is never exactly flat."""
+    away = points - points.mean(axis=0)
+    thinnest = np.linalg.eigh(away.T @ away)[1][:, 0]
+    return bool(np.ptp(away @ thinnest) < FLAT * np.abs(points).max())
 
 
 def _orient_faces(points: Any, hull: Any) -> ConvexPiece:
