@@ -23,6 +23,11 @@ NEAR_GROUND = 0.03
 """Height [m] above the lowest point up to which a part stands on the ground."""
 TOUCHES = 0.008
 """Height [m] above the lowest point up to which a part without wheels touches the ground."""
+UPS = {
+    "y": ((0, 1, 0), "1.5708 0 0"), "-y": ((0, -1, 0), "-1.5708 0 0"),
+    "x": ((1, 0, 0), "0 -1.5708 0"), "-x": ((-1, 0, 0), "0 1.5708 0"),
+}  # fmt: skip
+"""Axes that CAD exports may take for up, with their directions and the rpy of a joint that turns them to z."""
 PLUGINS = {
     "skid": "skid-steer", "mecanum": "mecanum", "planar_move": "omnidirectional",
     "force_based_move": "omnidirectional", "omni": "omnidirectional",
@@ -53,6 +58,7 @@ class BaseKind(NamedTuple):
         castors: links that roll or glide on the ground without a motor.
         legs: joints of legs.
         ground: height [m] of the lowest point in the root frame.
+        turned: what is wrong if the robot lies on its side: it has wheels if another axis than z is up. Else empty.
     """
 
     kind: str
@@ -62,6 +68,7 @@ class BaseKind(NamedTuple):
     castors: tuple[str, ...]
     legs: tuple[str, ...]
     ground: float
+    turned: str = ""
 
     @property
     def track(self) -> float:
@@ -83,9 +90,9 @@ class BaseKind(NamedTuple):
 
     @property
     def rolls_sideways(self) -> bool:
-        """Whether the wheels of a base that does not move sideways roll along y instead of x."""
+        """Whether the wheels of a base without rollers and steering of all wheels roll along y instead of x."""
         fixed = [wheel for wheel in self.wheels if not wheel.steering]
-        return self.kind in ("differential", "skid-steer", "ackermann", "tricycle") and bool(
+        return self.kind in ("differential", "skid-steer", "ackermann", "tricycle", "planar") and bool(
             fixed and all(abs(wheel.axle[0]) > 0.9 for wheel in fixed)
         )
 
@@ -149,7 +156,50 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
             castors.append(name)
     named, why = (kind, "given") if kind else _kind(found_wheels, legs, plugins, model)
     driven = tuple(wheel.joint for wheel in _driven(found_wheels, named, model))
-    return BaseKind(named, why, tuple(found_wheels), driven, tuple(castors), legs, ground)
+    turned = "" if found_wheels or (castors and loose) or legs or named != "planar" else _turned(model, points)
+    return BaseKind(named, why, tuple(found_wheels), driven, tuple(castors), legs, ground, turned)
+
+
+def _turned(model: RobotModel, points: Mapping[str, Floats]) -> str:
+    """Return what is wrong with a robot that has wheels if another axis than z is up, as a sentence.
+
+    SolidWorks exports in the axes of the drawing, whose up is often y. Round parts at both ends of an axle that would
+    stand on the ground are wheels; parts without a mesh have the box of their inertia, so that corners do not count.
+    """
+    poses, found = model.poses(), dict[str, list[Joint]]()
+    for name, (direction, _) in UPS.items():
+        heights = {link: rows @ np.array(direction, dtype=np.float64) for link, rows in points.items() if len(rows)}
+        ground = min((float(rows.min()) for rows in heights.values()), default=0.0)
+        for joint in model.movable:
+            if joint.kind == "continuous" and joint.child in heights:
+                low, high = float(heights[joint.child].min()), float(heights[joint.child].max())
+                axle = poses[joint.child][:3, :3] @ joint.axis
+                wide = float(np.ptp(points[joint.child] @ np.cross(axle, direction)))
+                flat = abs(float(axle @ np.array(direction))) < 0.2
+                if flat and low < ground + NEAR_GROUND and abs(wide - (high - low)) < 0.2 * (high - low):
+                    found.setdefault(name, []).append(joint)
+    found = {name: joints for name, joints in found.items() if _opposite(joints, poses)}
+    if not found:
+        return ""
+    up = max(found, key=lambda name: len(found[name]))
+    joints = found[up]
+    return (
+        f"the robot lies on its side: with {up} up, {', '.join(joint.name for joint in joints[:4])} would be wheels,"
+        f" but up is z (REP 103); export the file with z up, or put its root {model.root!r} below a new root, with a"
+        f" fixed joint of rpy={UPS[up][1]!r}"
+    )
+
+
+def _opposite(joints: Sequence[Joint], poses: Mapping[str, Floats]) -> bool:
+    """Return whether two joints are at opposite sides of a body, along their common axle."""
+    for joint in joints:
+        axle = poses[joint.child][:3, :3] @ joint.axis
+        for other in joints:
+            away = poses[other.child][:3, 3] - poses[joint.child][:3, 3]
+            along = abs(float(away @ axle))
+            if along > 0.05 and float(np.linalg.norm(np.cross(away, axle))) < 0.3 * along:
+                return True
+    return False
 
 
 def _points(model: RobotModel, name: str, poses: Mapping[str, Floats]) -> Floats:

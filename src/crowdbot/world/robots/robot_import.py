@@ -137,7 +137,11 @@ def import_robot(
     if not kind:
         _check_steering(document.place, model, base)
     status = GIVEN if kind else (FILE if base.why.startswith("the plugin") else DERIVED)
-    table.rows.insert(0, Guess("kind of base", base.kind, base.why, "--base KIND", status))
+    wrong = (
+        "; the robot lies on its side" if base.turned else "; it would drive sideways" if base.rolls_sideways else ""
+    )
+    status, why = DOUBTFUL if wrong else status, f"{base.why}{wrong}"
+    table.rows.insert(0, Guess("kind of base", base.kind, why, "--base KIND", status))
     done = _Conversion(
         name, table, model, base, parameters, read_joint_limits(document.root), turns_wheels(model, base)
     )
@@ -149,9 +153,8 @@ def import_robot(
     remarks += add_motors(table, urdf, model, base, done.wheeled, parameters.values.get("effort"), speed, done.urdf)
     table.check_names()
     made = RobotFolder(name, {done.urdf: format_xml(urdf), "robot.xml": format_xml(root)}, copies, table.rows)
-    if base.rolls_sideways:
-        remarks = [*remarks, SIDEWAYS]
-    made.remarks, made.kind, made.mass = (*model.warnings, *remarks), base.kind, done.mass
+    first = [SIDEWAYS] if base.rolls_sideways else [f"{document.place}: {base.turned}"] if base.turned else []
+    made.remarks, made.kind, made.mass = (*first, *model.warnings, *remarks), base.kind, done.mass
     made.texts["import.json"] = _record(made, source)
     return made
 
