@@ -360,10 +360,8 @@ def test_the_summary_of_the_picture_is_that_of_the_instant_of_a_pause(page):
         before = status(page, "time")
         page.get_by_role("button", name="Step", exact=True).click()
         wait(page, f"{VIEW}.status.time > {before}")
-        wait(
-            page,
-            f"document.querySelector('.summary').textContent.startsWith(`At ${{{VIEW}.status.time.toFixed(1)}} s: `)",
-        )
+        shown = page.evaluate(f"{VIEW}.status.time.toFixed(1)")
+        expect(page.get_by_role("status", name="Summary of the picture")).to_contain_text(f"At {shown} s: ")
 
 
 def test_a_run_that_ends_as_its_trial_plans_is_not_called_a_timeout(page):
