@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import fnmatch
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, Protocol, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 from crowdbot.recording import StepMessage
 
@@ -20,7 +21,7 @@ MOST_STEPS = 200
 Session = TypeVar("Session", bound=SocketSession)
 
 
-class SessionGraph(Protocol):
+class SessionGraph:
     """What the clients of a server see; used in the thread of the server, but for :attr:`wanted` and :attr:`now`.
 
     Args:
@@ -28,29 +29,32 @@ class SessionGraph(Protocol):
         inbox: receives commands and calls.
         later: calls a function with arguments in the thread of the server, from any thread.
         allowed: patterns of topics and services that clients may use, such as ``/robot/*``; None: all.
+
+    Attributes:
+        sessions: the connected clients.
+        wanted: topics that clients subscribe; replaced as a whole, so that other threads can read it.
+        now: simulated time [ns].
     """
+
+    sessions: list[Any]
 
     def __init__(
         self, interface: RobotInterface, inbox: Inbox, later: Callable[..., Any], allowed: Sequence[str] | None = None
-    ) -> None: ...
+    ) -> None:
+        self.interface, self.inbox, self.later, self.allowed = interface, inbox, later, allowed
+        self.sessions, self.wanted, self.now = [], frozenset[str](), 0
 
-    @property
-    def sessions(self) -> Sequence[Any]:
-        """The connected clients."""
-
-    @property
-    def wanted(self) -> frozenset[str]:
-        """Topics that clients subscribe."""
-
-    @property
-    def now(self) -> int:
-        """Simulated time [ns]."""
+    def allows(self, name: str) -> bool:
+        """Return whether clients may use a topic or service."""
+        return self.allowed is None or any(fnmatch.fnmatchcase(name, pattern) for pattern in self.allowed)
 
     def change(self, interface: RobotInterface) -> None:
         """Announce other topics and services to the clients."""
+        raise NotImplementedError
 
     def deliver(self, messages: Sequence[Any]) -> None:
         """Give the messages of a step to the clients that subscribe their topics."""
+        raise NotImplementedError
 
 
 class SocketTransport(Generic[Session]):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fnmatch
 import functools
 import itertools
 import json
@@ -17,6 +16,7 @@ from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import SERVICES, RobotInterface, interface_store, request_kind, response_kind
 from crowdbot.bridges.run_control import PAUSED, PLAYING
 from crowdbot.bridges.socket_server import Backlog, MessageQueue
+from crowdbot.bridges.socket_transport import SessionGraph
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
 
@@ -72,15 +72,13 @@ def _schema(kind: str) -> str:
     return str(interface_store().generate_msgdef(kind, ros_version=2)[0])
 
 
-class FoxgloveGraph:
-    """What the clients of a server see; used in one thread, but for :attr:`wanted` and :attr:`now`.
+class FoxgloveGraph(SessionGraph):
+    """What the clients of a server of Foxglove see.
 
-    Args:
-        interface: topics and services of the simulation.
-        inbox: receives commands and calls.
-        later: calls a function with arguments in the thread of the graph, from any thread.
-        allowed: patterns of topics and services that clients may use, such as ``/robot/*``; None: all.
+    Their views begin anew when the topics change; topics that are kept stay subscribed. ``/clock`` is also their time.
     """
+
+    sessions: list[FoxgloveSession]
 
     def __init__(
         self,
@@ -89,12 +87,7 @@ class FoxgloveGraph:
         later: Callable[..., Any],
         allowed: Sequence[str] | None = None,
     ) -> None:
-        self.inbox, self.later, self.allowed = inbox, later, allowed
-        self.sessions: list[FoxgloveSession] = []
-        self.wanted: frozenset[str] = frozenset()
-        """Topics that clients subscribe; replaced as a whole, so that other threads can read it."""
-        self.now = 0
-        """Simulated time [ns]."""
+        super().__init__(interface, inbox, later, allowed)
         self.speed = 1.0
         """Speed that the clients show."""
         self.latched: dict[str, StepMessage] = {}
@@ -105,7 +98,6 @@ class FoxgloveGraph:
         self.change(interface)
 
     def change(self, interface: RobotInterface) -> None:
-        """Announce another trial to the clients, whose views then begin anew; kept topics stay subscribed."""
         self.interface, self._session = interface, uuid.uuid4().hex
         self.outputs = {output.name: output for output in interface.outputs if self.allows(output.name)}
         gone = [topic for topic, (_, kind) in self.channels.items() if self._kind(topic) != kind]
@@ -121,7 +113,6 @@ class FoxgloveGraph:
         self.collect_subscriptions()
 
     def deliver(self, messages: Sequence[StepMessage]) -> None:
-        """Give messages to the clients that subscribe their topics; ``/clock`` is also the time of all clients."""
         for message in messages:
             if message.topic in self.outputs and self.outputs[message.topic].quality.latched:
                 self.latched[message.topic] = message
@@ -129,10 +120,6 @@ class FoxgloveGraph:
                 self.now = message.nanoseconds
             for session in self.sessions:
                 session.offer(message)
-
-    def allows(self, name: str) -> bool:
-        """Return whether clients may use a topic or service."""
-        return self.allowed is None or any(fnmatch.fnmatchcase(name, item) for item in self.allowed)
 
     def collect_subscriptions(self) -> None:
         """Collect the topics that clients subscribe; a client that sends commands wants the time."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fnmatch
 import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,6 +12,7 @@ from rosbags.interfaces import Nodetype
 from crowdbot.bridges.inbox import Inbox, ServiceCall
 from crowdbot.bridges.interface import PACKAGE, SERVICES, RobotInterface, interface_store, request_kind, response_kind
 from crowdbot.bridges.joint_actions import ABORTED, CANCELED, REJECTED, SUCCEEDED
+from crowdbot.bridges.socket_transport import SessionGraph
 from crowdbot.core import InputError
 
 from .frames import OutgoingMessage, field
@@ -74,15 +74,10 @@ def ros2_type(kind: str) -> str:
     return re.sub(r"^(\w+)/(\w+)$", r"\1/msg/\2", kind)
 
 
-class RosGraph:
-    """What the clients of a server see; used in one thread.
+class RosGraph(SessionGraph):
+    """What the clients of a server of rosbridge see. They and their subscriptions stay when the topics change."""
 
-    Args:
-        interface: topics and services of the simulation.
-        inbox: receives commands and calls.
-        later: calls a function with arguments in the thread of the graph, from any thread.
-        allowed: patterns of topics and services that clients may use, such as ``/robot/*``; None: all.
-    """
+    sessions: list[Peer]
 
     def __init__(
         self,
@@ -91,13 +86,8 @@ class RosGraph:
         later: Callable[..., Any],
         allowed: Sequence[str] | None = None,
     ) -> None:
-        self.interface, self.inbox, self.later, self.allowed = interface, inbox, later, allowed
-        self.sessions: list[Peer] = []
+        super().__init__(interface, inbox, later, allowed)
         self.latched: dict[str, OutgoingMessage] = {}
-        self.wanted: frozenset[str] = frozenset()
-        """Topics that clients subscribe; replaced as a whole, so that other threads can read it."""
-        self.now = 0
-        """Simulated time [ns]."""
         self.services: dict[str, tuple[Peer, str]] = {}
         self.actions: dict[str, tuple[Peer, str]] = {}
         self.advertised: dict[str, dict[Peer, str]] = {}
@@ -107,7 +97,6 @@ class RosGraph:
         self._inputs = {input_topic.name: input_topic for input_topic in interface.inputs}
 
     def change(self, interface: RobotInterface) -> None:
-        """Announce other topics and services; clients and their subscriptions stay."""
         self.interface = interface
         self._outputs = {output.name: output for output in interface.outputs}
         self._inputs = {input_topic.name: input_topic for input_topic in interface.inputs}
@@ -115,7 +104,6 @@ class RosGraph:
         self.latched = {name: item for name, item in self.latched.items() if name in kept}
 
     def deliver(self, messages: Iterable[OutgoingMessage]) -> None:
-        """Give messages to the clients that subscribe their topics."""
         for message in messages:
             if message.topic in self._outputs and self._outputs[message.topic].quality.latched:
                 self.latched[message.topic] = message
@@ -184,9 +172,7 @@ class RosGraph:
         """Raise :class:`InputError` if clients may not use a topic or service."""
         if not re.fullmatch(r"/?[A-Za-z~_{][\w/~{}.-]{0,250}", name):
             raise InputError(f"{name[:60]!r} is not a name of ROS")
-        if self.allowed is None or name.startswith("/rosapi/"):
-            return
-        if not any(fnmatch.fnmatchcase(name, pattern) for pattern in self.allowed):
+        if not name.startswith("/rosapi/") and not self.allows(name):
             raise InputError(f"{name[:60]!r} is not in the list of allowed topics")
 
     def queue_depth(self, topic: str) -> int:
