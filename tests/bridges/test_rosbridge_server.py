@@ -123,6 +123,28 @@ def test_the_client_role_joins_a_server_and_comes_back_after_its_death():
         again.stop()
 
 
+async def publish(port, topic, messages):
+    """Publish messages all at once."""
+    async with aiohttp.ClientSession() as http, http.ws_connect(f"http://127.0.0.1:{port}/") as socket:
+        for message in messages:
+            await socket.send_json({"op": "publish", "topic": topic, "msg": message})
+        await socket.send_str('{"op": "call_service", "service": "/rosapi/get_time", "id": "1"}')
+        await socket.receive(timeout=20)
+
+
+@pytest.mark.live
+def test_the_client_role_gets_every_command_of_a_burst():
+    interface = RobotInterface.of(load_trial("frontal"))
+    server = RosbridgeServer(port=0)
+    server.start(empty := RobotInterface(interface.trial, (), (), ()), Inbox(empty))
+    joined = RosbridgeClient(f"ws://127.0.0.1:{server.port}")
+    with Running(load_trial("frontal", duration=120.0), [joined], rate=1.0) as running:
+        assert answer_of(start_client(server.port, "control", 1))["sent"] == 1  # it waits until this one is subscribed
+        asyncio.run(publish(server.port, "/robot/cmd_vel", [{"linear": {"x": 0.01 * k}} for k in range(10)]))
+        wait(lambda: running.run.port.inbox.count.received >= 11)
+        server.stop()
+
+
 @pytest.mark.live
 def test_a_client_needs_a_server():
     with pytest.raises(InputError, match="cannot join ws://127.0.0.1:9"):

@@ -204,7 +204,8 @@ class RosbridgeClient:
                 latch = output.quality.latched
                 self._reply({"op": "advertise", "topic": output.name, "type": output.kind, "latch": latch})
         for input_topic in self._interface.inputs:
-            self._reply({"op": "subscribe", "topic": input_topic.name, "type": input_topic.kinds[0]})
+            wait = {"queue_length": input_topic.quality.depth}  # without it a server may keep the newest alone
+            self._reply({"op": "subscribe", "topic": input_topic.name, "type": input_topic.kinds[0], **wait})
         for service in self._interface.services:
             self._reply({"op": "advertise_service", "service": service.name, "type": service.kind})
         for action in self._interface.actions:
