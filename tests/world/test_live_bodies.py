@@ -19,6 +19,7 @@ from crowdbot.world import (
     Table,
     add_person,
     join_worlds,
+    move_agent,
     put_environments,
     remove_person,
     select_environments,
@@ -259,6 +260,18 @@ def test_robots_of_single_environments() -> None:
     assert world.twists[agent].forward[[0, 2]].tolist() == [0.0, 0.0]
     world.remove_robot(agent)
     assert not world.scene.active[:, agent].any()
+
+
+def test_a_robot_is_moved_in_one_environment() -> None:
+    world = batch()
+    places = world.scene.position[:, COUNT].tolist()
+    move_agent(world, COUNT, 6.0, 6.0, 0.5, 1)
+    places[1] = [6.0, 6.0]
+    assert world.scene.position[:, COUNT].tolist() == places
+    assert world.scene.heading[1, COUNT] == 0.5
+    assert world.twists[COUNT].forward[1] == 0.0
+    world.step({COUNT: Twist()})
+    np.testing.assert_allclose(world.scene.position[1, COUNT], [6.0, 6.0], atol=0.01)
 
 
 def test_copies_and_new_environments_work_after_changes() -> None:

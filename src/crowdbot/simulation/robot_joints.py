@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.trials import joint_positions
-from crowdbot.world import World, check_joint, free_joints, move_joint
+from crowdbot.world import World, check_joint, free_joints
 
 from .mounted_sensor import LEVEL
 from .robot_control import RobotControl
@@ -16,7 +16,7 @@ from .robot_control import RobotControl
 def move_robot_joint(control: RobotControl, world: World, environment: int, joint: str, position: float) -> None:
     """Set the target of a joint [rad or m] in one environment; it passes the checks."""
     control.joints[environment, free_joints(control.robot.body).index(joint)] = position
-    move_joint(world, control.agent, joint, position, environment)
+    world.move_joint(control.agent, joint, position, environment)
     _place_sensors(control, world, environment)
 
 
@@ -24,7 +24,7 @@ def restore_joints(control: RobotControl, world: World) -> None:
     """Apply the targets of all environments again, after the robot or its sensors were replaced."""
     for e in np.flatnonzero(~np.isnan(control.joints).all(axis=1)).tolist():
         for joint, position in control.joint_targets(e).items():
-            move_joint(world, control.agent, joint, position, e)
+            world.move_joint(control.agent, joint, position, e)
         _place_sensors(control, world, e)
 
 

@@ -84,6 +84,7 @@ class Simulation:
 
     Attributes:
         trial, seeds: the trial and the seed of each environment; of variants, the first.
+        template: makes the worlds; its trial is that of the start.
         world: moves people and robots; has the clock.
         around: the world for sensors and cameras.
         robots: state of each robot.
@@ -108,7 +109,7 @@ class Simulation:
     """
 
     storage = Storage(
-        constants=("trial", "people", "around", "_ways_out", "_template"),
+        constants=("trial", "people", "around", "_ways_out", "template"),
         shared=("seeds", "world", "robots", "former_robots", "readings", "failures", "_contacts"),
         last=("readings",),
     )
@@ -116,18 +117,18 @@ class Simulation:
     def __init__(
         self, trial: Trial | WorldTemplate, seeds: Seeds = 0, clock: Clock | None = None, *, posed: bool = False
     ) -> None:
-        self._template = trial if isinstance(trial, WorldTemplate) else WorldTemplate(trial, posed)
-        self.trial = trial = self._template.trial
+        self.template = trial if isinstance(trial, WorldTemplate) else WorldTemplate(trial, posed)
+        self.trial = trial = self.template.trial
         self.seeds = [int(seeds)] if isinstance(seeds, int | np.integer) else [int(seed) for seed in seeds]
         if not self.seeds:
             raise InputError("a simulation needs at least one seed, such as seeds=range(8)")
-        self.world, self.people = self._template.begin(self.seeds)
+        self.world, self.people = self.template.begin(self.seeds)
         self._set_around()
         count, first = len(self.seeds), trial.people
         self.robots = [
             RobotControl.of(trial, robot, first + k, self.world, self.seeds) for k, robot in enumerate(trial.robots)
         ]
-        self._template.set_goals(self.robots)
+        self.template.set_goals(self.robots)
         self.former_robots: list[RobotControl] = []
         self.readings: RobotReadings = []
         self.event = np.zeros(count, dtype=np.int8)
@@ -240,8 +241,8 @@ class Simulation:
             due,
             self.contacts(e),
             world.forces_of(e),
-            self._collisions(e, last) if collisions else (),
-            self._falls(e, last) if collisions else (),
+            self.ended_contact_events(e, last) if collisions else (),
+            self.ended_falls(e, last) if collisions else (),
             orders,
             e if number is None else number,
             tuple(robot.robot for robot in self.robots),
@@ -299,8 +300,8 @@ class Simulation:
         start = [self.trial.people + k for k in range(len(self.robots))]
         if self.former_robots or [robot.agent for robot in self.robots] != start:
             raise InputError("robots were added or removed in this simulation; make a new one instead of a restart")
-        self._template = self._template.of_trial(self.trial)
-        new = Simulation(self._template.of_environments(index), seeds)
+        self.template = self.template.of_trial(self.trial)
+        new = Simulation(self.template.of_environments(index), seeds)
         new.begin()
         kept = np.zeros(self.count, dtype=np.bool_)
         kept[index] = True
@@ -315,7 +316,7 @@ class Simulation:
         index = environment_index(environments, self.count)
         some = tree.take(self, index)
         some.seeds = [self.seeds[e] for e in index]
-        some._take_template(self._template.of_environments(index))
+        some._take_template(self.template.of_environments(index))
         some.world = select_environments(self.world, index)
         some._set_around()
         some.robots = [robot.select(index) for robot in self.robots]
@@ -332,7 +333,7 @@ class Simulation:
         """Replace some environments by those of another simulation of the same trial, which must not be used again."""
         index = environment_index(environments, self.count, other.count)
         vars(self).update(vars(tree.put(self, index, other, self.count)))
-        self._take_template(self._template.with_environments(index, other._template))
+        self._take_template(self.template.with_environments(index, other.template))
         self.world = put_environments(self.world, index, other.world)
         self._set_around()
         for mine, new in zip(self.robots, other.robots, strict=True):
@@ -344,8 +345,8 @@ class Simulation:
                 self._contacts[e] = other._contacts[k]
 
     def _take_template(self, template: WorldTemplate) -> None:
-        if template is not self._template:
-            self._template, self.trial = template, template.trial
+        if template is not self.template:
+            self.template, self.trial = template, template.trial
 
     def control_of(self, name: str) -> RobotControl:
         """Return the state of a robot.
@@ -391,12 +392,12 @@ class Simulation:
         for e, error in errors.items():
             self.fail(e, error)
 
-    def _collisions(self, environment: int, last: bool) -> tuple[BodyContactEvent, ...]:
+    def ended_contact_events(self, environment: int, last: bool) -> tuple[BodyContactEvent, ...]:
         """Return the contact events that ended since the previous call, ordered by end."""
         events, now = self.world.contact_events_of(environment), float(self.world.times[environment])
         return new_events(events, self._told, environment, math.inf if last else now - HOLD - INSTANT)
 
-    def _falls(self, environment: int, last: bool) -> tuple[Fall, ...]:
+    def ended_falls(self, environment: int, last: bool) -> tuple[Fall, ...]:
         """Return the falls that ended since the previous call, ordered by end."""
         falls, now = self.world.falls_of(environment), float(self.world.times[environment])
         return new_events(falls, self._fallen, environment, math.inf if last else now + INSTANT)

@@ -153,7 +153,7 @@ def _rare_parts(simulation: Simulation, index: Ints, last: bool) -> tuple[dict[i
     parts: tuple[Callable[[int], tuple[Any, ...]], ...] = (
         simulation.contacts,
         world.forces_of,
-        lambda e: simulation._collisions(e, last),
-        lambda e: simulation._falls(e, last),
+        lambda e: simulation.ended_contact_events(e, last),
+        lambda e: simulation.ended_falls(e, last),
     )
     return tuple({n: found for n, e in enumerate(index.tolist()) if (found := part(e))} for part in parts)

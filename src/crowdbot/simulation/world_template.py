@@ -29,7 +29,7 @@ from crowdbot.trials import (
     robot_reactions,
 )
 from crowdbot.typing import Ints
-from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds, planar_world
+from crowdbot.world import PeopleSource, PlanarWorld, Router, World, arrival_counts, join_worlds
 
 from .mounted_sensor import needs_bodies
 from .robot_control import RobotControl
@@ -117,7 +117,7 @@ class WorldTemplate:
         models = self._models(people, slots, seeds)
         seed = list(seeds) if len(seeds) > 1 else seeds[0]
         bodies = {"drives": drives, "latency": latency, "ghosts": ghosts, "outlines": outlines}
-        world = planar_world(scene, models, slots, seed=seed, **bodies, **how)
+        world = PlanarWorld.of_environments(scene, models, slots, seed=seed, **bodies, **how)
         self._set_off(world, people)
         return world
 

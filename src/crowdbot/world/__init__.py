@@ -53,7 +53,6 @@ if TYPE_CHECKING:
     from .crowd.waypoint import Zone as Zone
     from .doors.door import Door as Door
     from .doors.doors import Doors as Doors
-    from .doors.motion import show_doors as show_doors
     from .ground.ground import Ground as Ground
     from .ground.part import GroundPart as GroundPart
     from .live_changes import add_person as add_person
@@ -91,8 +90,6 @@ if TYPE_CHECKING:
     from .physics.stage import Tree as Tree
     from .physics.world import PhysicsWorld as PhysicsWorld
     from .planar import PlanarWorld as PlanarWorld
-    from .planar_environments import planar_world as planar_world
-    from .planar_live_changes import widen as widen
     from .reactions.reaction import REACTIONS as REACTIONS
     from .reactions.reaction import RobotReaction as RobotReaction
     from .reactions.robot_reactions import RobotReactions as RobotReactions
@@ -108,7 +105,6 @@ if TYPE_CHECKING:
     from .robots.guess_table import Guess as Guess
     from .robots.joint_motion import check_joint as check_joint
     from .robots.joint_motion import free_joints as free_joints
-    from .robots.joint_motion import move_joint as move_joint
     from .robots.mount import MountPlacement as MountPlacement
     from .robots.mount import SensorMount as SensorMount
     from .robots.robot import Robot as Robot

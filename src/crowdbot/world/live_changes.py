@@ -13,14 +13,11 @@ from crowdbot.core import InputError
 from .crowd.journey import JOURNEY, STOP
 from .crowd.routing import WAY, fresh
 from .crowd.source import TOP
-from .planar_live_changes import rest_robot, widen
 from .pushes import PUSH, push_memory
-from .world import World
+from .world import FARTHEST, World
 
 MOST = 20_000
 """Largest number of people and robots in an environment."""
-FARTHEST = 1e6
-"""Largest coordinate [m] of a person."""
 
 
 def slot_of(world: World, person: int, environment: int = 0) -> int:
@@ -79,7 +76,8 @@ def move_agent(world: World, person: int, x: float, y: float, heading: float | N
         changes["heading"] = math.pi - (math.pi - heading) % (2.0 * math.pi)
     _put(world, environment, slot, **changes)
     if slot in world.twists:
-        rest_robot(world, slot, [environment])
+        own, row = world.part(environment)
+        own.rest_robot(slot, [row])
 
 
 def redirect_person(world: World, person: int, x: float, y: float, environment: int = 0) -> None:
@@ -142,10 +140,8 @@ def add_person(
     check_room(world, environment)
     slot = _free_slot(world, environment)
     own, row = world.part(environment)
-    flow = own._traffic
-    person = int(flow.following[row])
-    flow.ids[row, slot] = person
-    flow.following[row] += 1
+    person: int = own.next_id(row)
+    own.assign_ids(slot, [row])
     away = np.array(goal) - np.array(position)
     ahead = away / max(float(np.hypot(*away)), 1e-12)
     memory: dict[str, Any] = dict.fromkeys(world.scene.memory, 0.0)
@@ -162,7 +158,8 @@ def add_person(
 def next_person(world: World, environment: int = 0) -> int:
     """Return the id that the next person or robot gets."""
     own, row = world.part(environment)
-    return int(own._traffic.following[row])
+    person: int = own.next_id(row)
+    return person
 
 
 def check_room(world: World, environment: int = 0) -> None:
@@ -179,7 +176,7 @@ def _free_slot(world: World, environment: int) -> int:
     if len(free):
         return int(free[0])
     own, row = world.part(environment)
-    widen(own, slots + 1)
+    own.widen(slots + 1)
     own.slots[row] = slots + 1
     own.embody_person(slots, row)
     return slots

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -11,40 +12,51 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import FreeClock, InputError, Pose, RandomStreams, Scene, SpatialPose, Storage, Twist, Walls
+from crowdbot.core import (
+    FreeClock,
+    InputError,
+    MissingExtra,
+    Pose,
+    RandomStreams,
+    Scene,
+    SpatialPose,
+    StateError,
+    Storage,
+    Twist,
+    Walls,
+    tree,
+)
 from crowdbot.core.outlines import Outlines
 from crowdbot.metrics import step_outline_wall_clearance, step_wall_clearance
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
-from crowdbot.typing import Floats
+from crowdbot.typing import Floats, Ints
 from crowdbot.world.robots.drives.drive import Drive, Twists
-from crowdbot.world.robots.drives.servo import CommandDelay, Pending
+from crowdbot.world.robots.drives.servo import CommandDelay
 
 from .crowd.contact import ContactModel
-from .crowd.environment_rows import resize_scene, works_in_batches
+from .crowd.environment_rows import (
+    Delayed,
+    align_delays,
+    align_scenes,
+    align_twists,
+    join_models,
+    pad_ids,
+    resize_scene,
+    with_common_time,
+    works_in_batches,
+)
 from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
 from .crowd.people_flow import PeopleFlow, environment_seeds
 from .crowd.portal import Exit, Portal
 from .crowd.replay import ReplayedPeople
-from .crowd.routing import WAY, Router
+from .crowd.routing import WAY, Router, fresh
 from .crowd.source import PeopleSource
 from .crowd.wall_crossing import ContactSurfaces, stop_at_walls
 from .crowd.waypoint import Zone
-from .doors.motion import ONE_ENVIRONMENT, move_doors, show_doors
 from .environment_time import EnvironmentTime
-from .planar_live_changes import (
-    keep_added_robots,
-    new_prop_name,
-    prop_number,
-    props_of,
-    put_robot_at,
-    remove_robot_at,
-    replace_walls,
-    robot_environments,
-    without_last,
-)
 from .planar_phases import (
     check_commands,
     contact_surfaces,
@@ -67,6 +79,7 @@ if TYPE_CHECKING:
     from .crowd.avatars import Avatars
     from .doors.doors import Doors
     from .physics.kinematic_bodies import KinematicBodies
+    from .physics.people_motion import PeopleMotion
     from .physics.stage import PhysicsStage, PropBody
     from .reactions.robot_reactions import RobotReactions
     from .rendering.renderer import Renderer
@@ -78,6 +91,12 @@ CHANGEABLE = (
     "ghosts",
 )  # fmt: skip
 """Arguments that :meth:`PlanarWorld.reconfigure` can change."""
+MOST_AGENTS = 1_000_000
+"""Largest number of agents of a stored state that is restored."""
+ONE_ENVIRONMENT = (
+    "a planar world with doors has one environment, since its walls are those of all; join several worlds with"
+    " join_worlds"
+)
 
 
 @dataclass
@@ -176,6 +195,7 @@ class PlanarWorld(World):
             "model", "drives", "dt", "seed", "leave_radius", "robot_margin", "router", "contact", "limits",
             "journeys", "sources", "exits", "portals", "script", "heading_jitter", "substeps", "latency", "ghosts",
             "reactions", "joined", "outlines", "_models", "_segments", "_surfaces", "_plain_router", "_outline_table",
+            "_changed_props",
         ),
     )  # fmt: skip
 
@@ -197,19 +217,19 @@ class PlanarWorld(World):
         self.scene = self.scene.replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: list[KinematicBodies] | None = None
+        self._changed_props: tuple[list[str], list[Floats]] | None = None
         self.slots = np.full(len(seeds), self.scene.shape[1], dtype=np.int64)
         self._previous = self.scene
         self._segments: tuple[Walls, Floats] | None = None
-        self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
+        self._delayed: Delayed = {}
         self._plain_router = self.router
         self._outline_table: Outlines | None = None
-        if self.doors is not None:
-            show_doors(self)
+        self.show_doors()
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         asked = self._checked(commands)
         if self.doors is not None:
-            move_doors(self, self.environment_time.age)
+            self._move_doors(self.doors)
         self._previous, external = self.scene, self.scene.external
         before = self._with_replayed_external(self.scene)
         self.clock.advance()
@@ -244,7 +264,7 @@ class PlanarWorld(World):
         Raises:
             InputError: the parameter cannot change in a running world, or a value is not allowed.
         """
-        how = keep_added_robots(self, how)
+        how = self._with_added_robots(how)
         for name in how:
             if name not in CHANGEABLE:
                 raise InputError(f"{name} cannot change in a running world; these can: {', '.join(CHANGEABLE)}")
@@ -266,8 +286,7 @@ class PlanarWorld(World):
         self.sources = sources
         memory = {name: value for name, value in scene.memory.items() if name not in forgotten}
         self.scene = scene.replace(time=self.scene.time, memory=memory)
-        if self.doors is not None:
-            show_doors(self, bool(forgotten))
+        self.show_doors(bool(forgotten))
         if seed is not None:
             self.seed = seed
             self._rngs = RandomStreams(self._traffic.seeds.tolist(), "crowd")
@@ -279,6 +298,11 @@ class PlanarWorld(World):
     @property
     def waiting_count(self) -> NDArray[np.int64]:
         return self._traffic.waiting_count
+
+    @property
+    def people_motions(self) -> list[PeopleMotion]:
+        """Bodies of people in each environment, empty without bodies."""
+        return [bodies.people for bodies in self._bodies or ()]
 
     def pose(self, robot: int) -> Pose:
         return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
@@ -447,15 +471,111 @@ class PlanarWorld(World):
         return drift_people(self._stop_at_walls(earlier, crowd), self.ids, self.dt)
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        remove_robot_at(self, agent, robot_environments(self, agent, environments))
+        self._take_away(agent, self._environments_with(agent, environments))
 
     def place_robot(
         self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        put_robot_at(self, agent, robot, place, ghost, environments)
+        self._start_robot(agent, robot, place, ghost, environments)
         for bodies in self._bodies or ():
             bodies.robots = {**bodies.robots, agent: robot}
             bodies.forget_renderer()
+
+    def _start_robot(
+        self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
+    ) -> None:
+        """Make an agent without a body a robot at rest in some environments, and an absent one in the others."""
+        self._add_absent_robot(agent, robot.drive, robot.latency, robot.outline)
+        x, y, heading = place
+        rows = list(environments)
+        if rows:
+            self.assign_ids(agent, rows)
+        top = float(getattr(robot.drive, "max_speed", 1.0))
+        values = {
+            "position": (x, y), "velocity": 0.0, "heading": math.pi - (math.pi - heading) % (2.0 * math.pi),
+            "goal": (x, y), "radius": robot.radius, "preferred_speed": top, "max_speed": top, "visible": not ghost,
+            "group": -1,
+        }  # fmt: skip
+        arrays = {name: getattr(self.scene, name).copy() for name in (*values, "active")}
+        for name, value in values.items():
+            arrays[name][:, agent] = value
+        arrays["active"][rows, agent] = True
+        if ghost:
+            self.ghosts = [*self.ghosts, agent]
+        self.scene = self.scene.replace(**arrays)
+
+    def _add_absent_robot(self, agent: int, drive: Drive, latency: float, outline: Floats | None) -> None:
+        self.widen(agent + 1)
+        self.slots[:] = np.maximum(self.slots, agent + 1)
+        self.drives, self.latency = {**self.drives, agent: drive}, {**self.latency, agent: latency}
+        self.twists = {**self.twists, agent: Twists.of(Twist(), len(self.slots))}
+        self.added_robots = self.added_robots | {agent}
+        if outline is not None:
+            self.outlines = {**self.outlines, agent: outline}
+            self._outline_table = None
+        external = self.scene.external.copy()
+        external[:, agent] = True
+        self.scene = self.scene.replace(external=external)
+
+    def _take_away(self, agent: int, environments: Sequence[int]) -> None:
+        """Make a robot absent in some environments."""
+        active = self.scene.active.copy()
+        active[environments, agent] = False
+        self.scene = self.scene.replace(active=active)
+        self.rest_robot(agent, environments)
+
+    def rest_robot(self, agent: int, environments: Sequence[int]) -> None:
+        """Let a robot stand in some environments: its velocity is 0 until the next command."""
+        left = ~np.isin(np.arange(len(self.slots)), environments)
+        twist = self.twists[agent]
+        still = Twists(*(np.where(left, part, 0.0) for part in (twist.forward, twist.turn, twist.left)))
+        self.twists = {**self.twists, agent: still}
+
+    def match_robots(self, other: PlanarWorld) -> None:
+        """Make robots that were added to one of two worlds of a trial absent robots of the other.
+
+        Raises:
+            InputError: a person has the place of such a robot.
+        """
+        for item, two in ((self, other), (other, self)):
+            for agent in sorted(item.added_robots - two.added_robots):
+                if agent < two.scene.shape[1] and two.scene.active[:, agent].any():
+                    raise InputError(f"agent {agent} is a robot in one environment and a person in another")
+                latency, outline = item.latency.get(agent, 0.0), item.outlines.get(agent)
+                two._add_absent_robot(agent, item.drives[agent], latency, outline)
+
+    def _with_added_robots(self, how: dict[str, Any]) -> dict[str, Any]:
+        """Return new parameters that leave the robots unchanged that were added while the world runs."""
+        kept = self.added_robots
+        if not kept:
+            return how
+        rest: dict[str, Any] = {}
+        for name in ("drives", "latency"):
+            if name in how:
+                rest[name] = {agent: getattr(self, name)[agent] for agent in kept} | dict(how[name])
+        if "ghosts" in how:
+            rest["ghosts"] = [*how["ghosts"], *(agent for agent in self.ghosts if agent in kept)]
+        return {**how, **rest}
+
+    def widen(self, agents: int) -> None:
+        """Add absent agents to all environments, and bodies of people, so that each has at least ``agents``."""
+        if agents > self.scene.shape[1]:
+            self.scene, self._previous = resize_scene(self.scene, agents), resize_scene(self._previous, agents)
+            self._traffic.ids = pad_ids(self._traffic.ids, agents)
+            self.ids = self._traffic.ids
+            self._set_models(self._each_model())
+        for people in self.people_motions:
+            people.grow(agents)
+
+    def assign_ids(self, agent: int, environments: Sequence[int]) -> None:
+        """Give a new person or robot the next identity in some environments."""
+        rows = list(environments)
+        self._traffic.ids[rows, agent] = self._traffic.following[rows]
+        self._traffic.following[rows] += 1
+
+    def next_id(self, environment: int) -> int:
+        """Return the identity that the next person or robot of an environment gets."""
+        return int(self._traffic.following[environment])
 
     def embody_person(self, agent: int, environment: int) -> None:
         """Give a new person a body, in a world with bodies."""
@@ -463,32 +583,281 @@ class PlanarWorld(World):
             bodies.people.grow(self.scene.shape[1], [agent])
             bodies.forget_renderer()
 
+    def move_joint(self, robot: int, joint: str, position: float, environment: int = 0) -> None:
+        if self._bodies is not None:
+            bodies = self._bodies[environment]
+            bodies.joints = {**bodies.joints, robot: {**bodies.joints.get(robot, {}), joint: position}}
+
+    @property
+    def prop_names(self) -> list[str]:
+        return self._props()[0]
+
     def add_prop(self, prop: PropBody, name: str = "") -> str:
         from .physics.scenery import add_rings, prop_outline
+        from .physics.stage import new_prop_name
 
-        names, outlines = props_of(self)
+        names, outlines = self._props()
         name, ring = new_prop_name(names, name), prop_outline(prop)
         for bodies in self._bodies or ():
             bodies.walls = self.scene.walls if bodies.walls is None else bodies.walls
             bodies.stage = dataclasses.replace(bodies.stage, props=(*bodies.stage.props, prop))
             bodies.forget_renderer()
-        self._prop_outlines = ([*names, name], [*outlines, ring])
-        replace_walls(self, add_rings(self.scene.walls, (ring,)))
+        self._changed_props = ([*names, name], [*outlines, ring])
+        self._replace_walls(add_rings(self.scene.walls, (ring,)))
         return name
 
     def remove_prop(self, name: str) -> None:
         from .physics.scenery import remove_ring
-        from .physics.stage import without_prop
+        from .physics.stage import prop_number, without_prop, without_prop_name
 
-        names, outlines = props_of(self)
+        names, outlines = self._props()
         number = prop_number(names, name)
         walls = remove_ring(self.scene.walls, outlines[number])
         for bodies in self._bodies or ():
             bodies.stage = without_prop(bodies.stage, number)
             bodies.forget_renderer()
-        left = without_last([*names[:number], "", *names[number + 1 :]])
-        self._prop_outlines = (left, outlines[: len(left)])
-        replace_walls(self, walls)
+        left = without_prop_name(names, number)
+        self._changed_props = (left, outlines[: len(left)])
+        self._replace_walls(walls)
+
+    def _props(self) -> tuple[list[str], list[Floats]]:
+        """Return names and outlines of the props by number."""
+        from .physics.scenery import prop_outline
+
+        if self._changed_props is not None:
+            return self._changed_props
+        props = self._bodies[0].stage.props if self._bodies else ()
+        return [f"prop{k}" for k in range(len(props))], [prop_outline(prop) for prop in props]
+
+    def has_other_props(self, props: Sequence[PropBody]) -> bool:
+        """Return whether props were added or removed, so that they are not those of the start."""
+        return self._changed_props is not None
+
+    def _replace_walls(self, walls: Walls) -> None:
+        """Replace the walls in the scenes before and after the last step."""
+        self.scene, self._previous = self.scene.replace(walls=walls), self._previous.replace(walls=walls)
+
+    def _move_doors(self, doors: Doors) -> None:
+        """Move the doors by a step that begins now."""
+        before = [*doors.blocked, *doors.side.tolist()]
+        doors.advance(self.scene, float(np.ravel(self.environment_time.age)[0]), self.dt)
+        self.show_doors(before != [*doors.blocked, *doors.side.tolist()])
+
+    def show_doors(self, new_paths: bool = True) -> None:
+        """Set walls and paths by the doors, if there are any; ``new_paths`` forgets the paths that people follow."""
+        if self.doors is None:
+            return
+        self._show_leaves(self.doors)
+        base = self._plain_router
+        if base is None:
+            return
+        self.router = self._traffic.router = self.doors.router(base)
+        if new_paths and WAY in self.scene.memory:
+            self.scene = self.scene.replace(memory={**self.scene.memory, WAY: fresh(self.scene.shape)})
+
+    def _show_leaves(self, doors: Doors) -> None:
+        walls = doors.update_walls(self.scene.walls)
+        if walls is not self.scene.walls:
+            self._replace_walls(walls)
+
+    def has_other_robots(self, robots: Sequence[int]) -> bool:
+        """Return whether robots were added or removed, so that their agents are not those of the start."""
+        return bool(self.added_robots)
+
+    def add_stored_people(self, state: Mapping[str, Any], path: str) -> None:
+        """Add the slots and bodies of people who were added before a state was stored below a path."""
+        stored = state.get(f"{path}/_traffic/ids")
+        agents = stored.shape[1] if isinstance(stored, np.ndarray) and stored.ndim == 2 else 0
+        if self.scene.shape[1] < agents <= MOST_AGENTS:
+            self.widen(agents)
+        for e, people in enumerate(self.people_motions):
+            afoot = state.get(f"{path}/{self._people_path(e)}/afoot")
+            for agent in afoot[len(people.afoot) :].tolist() if isinstance(afoot, np.ndarray) else ():
+                self.embody_person(agent, e)
+
+    def _people_path(self, environment: int) -> str:
+        """Return the path below which the bodies of people are stored."""
+        return f"_bodies/{environment}/people"
+
+    def finish_restore(self) -> None:
+        """Derive what a stored state leaves out, after its values were set.
+
+        Raises:
+            StateError: the arrays of people do not fit together.
+        """
+        self.show_doors(new_paths=False)
+        for scene in (self.scene, self._previous):
+            for name, array in scene.memory.items():
+                if not isinstance(name, str) or not isinstance(array, np.ndarray) or array.shape[:2] != scene.shape:
+                    raise StateError(f"the memory {name!r} of people has no row for each person")
+            scene.check()
+
+    @classmethod
+    def of_environments(cls, scene: Scene, models: Sequence[CrowdModel], slots: Ints, **how: Any) -> PlanarWorld:
+        """Return a world of E environments that can have different crowd models and numbers of agents.
+
+        Args:
+            scene: initial scene of E environments.
+            models: crowd model of each environment.
+            slots: ``[E]`` number of agents of each environment; further ones are absent and external.
+            how: other arguments of :class:`PlanarWorld`.
+
+        >>> from crowdbot.models import ORCA
+        >>> scene = Scene.of([[[0.0, 0.0]], [[1.0, 0.0]]])
+        >>> models = [ORCA(), ORCA(time_horizon=1.0)]
+        >>> PlanarWorld.of_environments(scene, models, np.array([1, 1]), drives={}, dt=0.1).slots.tolist()
+        [1, 1]
+        """
+        world = cls(scene, models[0], **how)
+        world.slots = slots
+        if len(models) > 1:
+            world._set_models(list(models))
+        return world
+
+    @classmethod
+    def join(cls, worlds: Sequence[PlanarWorld]) -> PlanarWorld:
+        """Return one world with the environments of several worlds of a trial, on the clock of the first.
+
+        Worlds with fewer agents are padded with absent ones. The worlds must not be used any more.
+
+        >>> from crowdbot.models import ORCA
+        >>> parts = [PlanarWorld(Scene.of([[float(k), 0.0]]), ORCA(), {}, dt=0.1, seed=k) for k in range(3)]
+        >>> PlanarWorld.join(parts).step({}).position[:, 0].tolist()
+        [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]
+        """
+        first = worlds[0]
+        if len(worlds) == 1:
+            return first
+        if first.doors is not None:
+            raise InputError(ONE_ENVIRONMENT)
+        whole = copy.copy(first)
+        for world in worlds[1:]:
+            world.environment_time.follow(first.clock)
+        models = [model for world in worlds for model in world._each_model()]
+        whole._set_environments(tree.join(cls._environments_of(worlds)), models)
+        if first._bodies is not None:
+            whole._bodies = [bodies for world in worlds for bodies in world._bodies or ()]
+        return whole
+
+    def select(self, environments: Sequence[int] | Ints) -> PlanarWorld:
+        """Return an independent world with some environments; an environment may be selected more than once."""
+        index = np.asarray(environments, dtype=np.int64)
+        some = copy.copy(self)
+        models = self._each_model()
+        some._set_environments(tree.take(self._environments_of([self])[0], index), [models[e] for e in index])
+        some.environment_time.follow()
+        some.doors = None if self.doors is None else self.doors.copy()
+        if self._bodies is not None:
+            some._bodies = [self._bodies[e].copy() for e in index]
+            for bodies in some._bodies:
+                bodies.doors = some.doors
+            some.people = some._bodies[0].people if len(index) else None
+        return some
+
+    def put(self, environments: Sequence[int] | Ints, other: PlanarWorld) -> None:
+        """Replace some environments by those of another world of the trial, which must not be used any more."""
+        self.match_robots(other)
+        index = np.asarray(environments, dtype=np.int64)
+        if self.doors is not None:
+            self.scene = self.scene.replace(walls=other.scene.walls)
+            self.doors, self.router = other.doors, other.router
+        other.environment_time.follow(self.clock)
+        models, new = list(self._each_model()), other._each_model()
+        for k, e in enumerate(index.tolist()):
+            models[e] = new[k]
+            if self._bodies is not None and other._bodies is not None:
+                self._bodies[e] = other._bodies[k]
+        if self._bodies is not None:
+            self.people = self._bodies[0].people
+        changed = any(model is not self.model for model in models)
+        whole, rows = self._environments_of([self, other])
+        self._set_environments(tree.put(whole, index, rows, len(self.slots)), models if changed else None)
+
+    def undo_point(self) -> Callable[[], None]:
+        """Return a function that takes back the next step."""
+        kept = {name: getattr(self, name) for name in ("scene", "_previous", "contacts")}
+        twists, delayed, tick = dict(self.twists), dict(self._delayed), self.clock.tick
+        ids, following = self._traffic.ids.copy(), self._traffic.following.copy()
+        rngs = None if works_in_batches(self.model) else tree.take(self._rngs, slice(None))
+
+        def undo() -> None:
+            self._rngs = rngs or self._rngs
+            for name, value in kept.items():
+                setattr(self, name, value)
+            self.twists, self._delayed, self.clock.tick = twists, delayed, tick
+            self._traffic.ids[:], self._traffic.following[:] = ids, following
+
+        return undo
+
+    def step_one_by_one(self, commands: Mapping[int, Twist | Twists]) -> tuple[PlanarWorld, dict[int, Exception]]:
+        """Advance each environment alone; return the world, and the exceptions of environments that lose their agents.
+
+        The world itself must not be used any more.
+        """
+        parts, errors, count = [], {}, len(self.slots)
+        wide = {robot: Twists.of(command, count) for robot, command in commands.items()}
+        for e in range(count):
+            index = np.array([e])
+            part = self.select(index)
+            try:
+                part.step({robot: tree.take(command, index) for robot, command in wide.items()})
+            except MissingExtra:
+                raise
+            except Exception as error:  # told to the caller
+                errors[e] = error
+                part.scene = part.scene.replace(active=np.zeros_like(part.scene.active))
+            parts.append(part)
+        clock = self.clock
+        clock.advance()
+        whole = PlanarWorld.join(parts)
+        whole.clock = clock
+        return whole, errors
+
+    def _each_model(self) -> list[Any]:
+        return self._models if self._models is not None else [self.model] * len(self.slots)
+
+    def _set_models(self, models: list[Any]) -> None:
+        """Set the model of each environment, as one model if a call for all equals a call for each."""
+        joined = join_models(models, self.scene.shape[1])
+        self._models = models
+        self.joined = joined is not None
+        self.model = models[0] if joined is None else joined
+
+    @staticmethod
+    def _environments_of(worlds: Sequence[PlanarWorld]) -> list[dict[str, Any]]:
+        """Fields with environments of worlds, as trees of one structure: padded, with equally many pending commands."""
+        scenes, before = [world.scene for world in worlds], [world._previous for world in worlds]
+        if len(worlds) > 1:
+            scenes, before = align_scenes(scenes), align_scenes(before)
+        twists = {robot: align_twists([world.twists[robot] for world in worlds]) for robot in worlds[0].twists}
+        delays = align_delays([world._delayed for world in worlds], [len(world.slots) for world in worlds])
+        states = []
+        for k, world in enumerate(worlds):
+            contacts = tree.objects([()] * len(world.slots))
+            for contact in world.contacts:
+                contacts[contact.environment] += (contact,)
+            flow = dataclasses.replace(world._traffic, ids=pad_ids(world._traffic.ids, scenes[k].shape[1]))
+            states.append(
+                {
+                    "scene": scenes[k], "_previous": before[k], "_traffic": flow,
+                    "twists": {robot: row[k] for robot, row in twists.items()},
+                    "_delayed": delays[k], "contacts": contacts, "slots": world.slots, "avatars": world.avatars,
+                    "environment_time": world.environment_time, "_rngs": world._rngs,
+                }
+            )  # fmt: skip
+        return states
+
+    def _set_environments(self, state: dict[str, Any], models: list[Any] | None) -> None:
+        """Set the fields with environments, and the model of each environment if it changes."""
+        scene = self.scene
+        for name, value in state.items():
+            setattr(self, name, value)
+        self.ids = self._traffic.ids
+        self.contacts = tuple(item._replace(environment=e) for e, row in enumerate(state["contacts"]) for item in row)
+        self.scene = with_common_time(self.scene, scene)
+        self._previous = with_common_time(self._previous, scene).replace(walls=self.scene.walls)
+        if models is not None:
+            self._set_models(models)
 
 
 def check_arguments(

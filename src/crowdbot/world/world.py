@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -9,12 +10,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls, storable
+from crowdbot.core import Clock, InputError, Pose, Scene, SpatialPose, Twist, Walls, storable
 from crowdbot.world.robots.drives.drive import Twists
 
 from .environment_time import EnvironmentTime
-from .planar_live_changes import check_robot_place, chosen_environments
 from .robots.mount import MountPlacement
+from .robots.robot import Robot
 
 if TYPE_CHECKING:
     from crowdbot.humans import FallPose, People
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     from .physics.people_motion import PeopleMotion
     from .physics.stage import PhysicsStage, PropBody
     from .rendering.renderer import Renderer
-    from .robots.robot import Robot
+
+FARTHEST = 1e6
+"""Largest coordinate [m] of a person or robot."""
 
 
 @storable
@@ -269,7 +272,7 @@ class World(ABC):
         """
         place = (x, y, heading)
         check_robot_place(robot, place)
-        chosen, agent = chosen_environments(len(self.slots), environments), int(self.slots.max())
+        chosen, agent = self._chosen(environments), int(self.slots.max())
         self.place_robot(agent, robot, place, ghost, chosen)
         return agent
 
@@ -290,6 +293,53 @@ class World(ABC):
         Raises:
             InputError: the agent is not a robot that is present in these environments.
         """
+
+    def _chosen(self, environments: Sequence[int] | None) -> list[int]:
+        """Return some environments, None: all.
+
+        Raises:
+            InputError: an environment does not exist or is given twice.
+        """
+        count = len(self.slots)
+        chosen = list(range(count)) if environments is None else [int(e) for e in environments]
+        if len(set(chosen)) != len(chosen) or not all(0 <= e < count for e in chosen):
+            raise InputError(f"environments = {chosen}: give each environment once, from 0 to {count - 1}")
+        return chosen
+
+    def _environments_with(self, agent: int, environments: Sequence[int] | None) -> list[int]:
+        """Return the environments in which a robot is to be removed, None: all in which it is present.
+
+        Raises:
+            InputError: an environment does not exist, or the robot is not present in it.
+        """
+        active, robots = self.scene.active, sorted(self.twists)
+        if environments is None and agent in robots:
+            environments = np.flatnonzero(active[:, agent]).tolist()
+        chosen = self._chosen(environments)
+        if agent not in robots or not chosen or not active[chosen, agent].all():
+            present = [robot for robot in robots if active[chosen or slice(None), robot].all()]
+            raise InputError(f"agent {agent} is not a robot that is present; present are {present or 'none'}")
+        return chosen
+
+    @abstractmethod
+    def move_joint(self, robot: int, joint: str, position: float, environment: int = 0) -> None:
+        """Give a joint of a robot a target position, which is kept until it is replaced.
+
+        In the physics world, the position motor of the joint moves it; a joint without one moves there at its maximum
+        speed and is held. In the plane, the bodies of the robot for sensors and cameras are in the new posture at once;
+        without bodies, nothing changes.
+
+        Args:
+            robot: agent of the robot.
+            joint: name of the joint; :func:`check_joint` has passed.
+            position: target [rad or m].
+            environment: index of the environment.
+        """
+
+    @property
+    @abstractmethod
+    def prop_names(self) -> list[str]:
+        """Names of the props by number; that of a removed one is empty."""
 
     @abstractmethod
     def add_prop(self, prop: PropBody, name: str = "") -> str:
@@ -322,3 +372,15 @@ class World(ABC):
         Raises:
             InputError: there is no prop of this name.
         """
+
+
+def check_robot_place(robot: Robot, place: tuple[float, float, float]) -> None:
+    """Raise :class:`InputError` if a robot cannot be added at x, y [m], heading [rad]."""
+    x, y, heading = place
+    if not isinstance(robot, Robot):
+        raise InputError(f"robot is a {type(robot).__name__}; give a Robot such as Robot.load('turtlebot2')")
+    if not (math.isfinite(x) and math.isfinite(y) and max(abs(x), abs(y)) <= FARTHEST and math.isfinite(heading)):
+        raise InputError(
+            f"the place x = {x}, y = {y} m, heading = {heading} rad of a robot must be finite and at most"
+            f" {FARTHEST:g} m away from 0"
+        )

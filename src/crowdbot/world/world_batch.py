@@ -12,15 +12,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, MissingExtra, Pose, Scene, SpatialPose, Storage, Twist, Walls, tree
 from crowdbot.typing import Ints
-from crowdbot.world import planar_environments as planar
 from crowdbot.world.crowd.environment_rows import pad_ids, resize_scene, stack_scenes
 from crowdbot.world.planar import PlanarWorld
-from crowdbot.world.planar_live_changes import (
-    live_prop_names,
-    match_robots,
-    new_prop_name,
-    robot_environments,
-)
 from crowdbot.world.robots.drives.drive import Twists
 from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.world import Contact, World
@@ -160,9 +153,9 @@ class WorldBatch(World):
     def put(self, environments: Sequence[int] | Ints, other: World) -> None:
         """Replace some environments by those of another world, which must not be used any more."""
         for world in worlds_of(other):
-            match_robots(self.worlds[0], world)
+            self.worlds[0].match_robots(world)
         for item in self.worlds:
-            match_robots(item, worlds_of(other)[0])
+            item.match_robots(worlds_of(other)[0])
         other.environment_time.follow(self.clock)
         self.environment_time = tree.put(self.environment_time, np.asarray(environments), other.environment_time)
         for e, world in zip(environments, worlds_of(other), strict=True):
@@ -176,19 +169,28 @@ class WorldBatch(World):
             self.worlds[e].place_robot(agent, robot, place, ghost, [0] if e in environments else [])
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        for e in robot_environments(self, agent, environments):
+        for e in self._environments_with(agent, environments):
             self.worlds[e].remove_robot(agent)
 
+    def move_joint(self, robot: int, joint: str, position: float, environment: int = 0) -> None:
+        self.worlds[environment].move_joint(robot, joint, position)
+
+    @property
+    def prop_names(self) -> list[str]:
+        return max((world.prop_names for world in self.worlds), key=len)
+
     def add_prop(self, prop: PropBody, name: str = "") -> str:
-        name = name or new_prop_name(max(map(live_prop_names, self.worlds), key=len), "")
+        from .physics.stage import new_prop_name
+
+        name = name or new_prop_name(self.prop_names, "")
         for world in self.worlds:
-            new_prop_name(live_prop_names(world), name)
+            new_prop_name(world.prop_names, name)
         for world in self.worlds:
             world.add_prop(prop, name)
         return name
 
     def remove_prop(self, name: str) -> None:
-        holders = [world for world in self.worlds if name in live_prop_names(world)]
+        holders = [world for world in self.worlds if name in world.prop_names]
         for world in holders or self.worlds:
             world.remove_prop(name)
 
@@ -272,32 +274,24 @@ def join_worlds(worlds: Sequence[World]) -> World:
     if worlds[0].has_own_walls:
         return WorldBatch([item for world in worlds for item in worlds_of(world)], worlds[0].clock)
     parts: Any = worlds
-    return planar.join_worlds(parts)
+    return PlanarWorld.join(parts)
 
 
 def select_environments(world: World, environments: Sequence[int] | Ints) -> World:
     """Return an independent world with some environments, which may be repeated, on a free clock."""
-    anything: Any = world
-    if not world.has_own_walls:
-        return planar.select_environments(anything, environments)
+    if isinstance(world, PlanarWorld) and not world.has_own_walls:
+        return world.select(environments)
     worlds = [worlds_of(world)[int(e)] for e in environments]
-    return join_worlds(
-        [world.copy() if world.walls_fixed else planar.select_environments(world, [0]) for world in worlds]
-    )
+    return join_worlds([world.copy() if world.walls_fixed else world.select([0]) for world in worlds])
 
 
 def put_environments(world: World, environments: Sequence[int] | Ints, other: World) -> World:
     """Return the world with some environments replaced by those of another, which must not be used any more."""
-    anything: Any = world
-    if isinstance(world, WorldBatch):
-        world.put(environments, other)
-    elif not world.walls_fixed:
-        new: Any = other
-        match_robots(world, other)
-        planar.put_environments(anything, environments, new)
-    else:
+    if not isinstance(world, WorldBatch) and world.walls_fixed:
         other.environment_time.follow(world.clock)
         return other
+    some: Any = world
+    some.put(environments, other)
     return world
 
 
@@ -309,10 +303,10 @@ def step_environments(world: World, commands: Mapping[int, Twist | Twists]) -> t
     Raises:
         MissingExtra: a package is not installed.
     """
-    anything: Any = world
     if isinstance(world, WorldBatch):
         return world, world.try_step(commands)
-    undo = planar.undo_point(anything) if len(world.slots) > 1 else None
+    planar: Any = world
+    undo = planar.undo_point() if len(world.slots) > 1 else None
     try:
         world.step(commands)
     except MissingExtra:
@@ -321,5 +315,5 @@ def step_environments(world: World, commands: Mapping[int, Twist | Twists]) -> t
         if undo is None:
             return world, {0: error}
         undo()
-        return planar.step_one_by_one(anything, commands)
+        return planar.step_one_by_one(commands)  # type: ignore[no-any-return]
     return world, {}

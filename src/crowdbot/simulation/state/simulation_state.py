@@ -10,15 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from crowdbot.core import Scene, StateError, tree
-from crowdbot.world import show_doors, widen, worlds_of
+from crowdbot.core import StateError, tree
+from crowdbot.world import worlds_of
 
 if TYPE_CHECKING:
     from crowdbot.simulation.simulation import Simulation
-
-MOST_AGENTS = 1_000_000
 
 
 def state_of(simulation: Simulation) -> dict[str, Any]:
@@ -65,37 +61,15 @@ def restore_state(simulation: Simulation, state: Mapping[str, Any]) -> None:
     1
     """
     try:
-        _add_people(simulation.world, state)
+        for path, world in _part_worlds(simulation.world):
+            world.add_stored_people(state, path)
         tree.unflatten(state, simulation, "simulation")
         for _, world in _part_worlds(simulation.world):
-            _update_engine(world)
-            if world.doors is not None:
-                show_doors(world, new_paths=False)
-            _check_scene(world.scene)
-            _check_scene(world._previous)
+            world.finish_restore()
     except StateError:
         raise
     except Exception as error:  # wrong values make their classes fail in many ways
         raise StateError(f"the state is damaged: {type(error).__name__}: {str(error)[:80]}") from error
-
-
-def _update_engine(world: Any) -> None:
-    """Compute the frames of all bodies of a world; the models get the limbs of people as after a step."""
-    rigid = getattr(world, "rigid", None)
-    if rigid is None:
-        return
-    with rigid.engine_steps():
-        pass
-    for ghost in rigid.ghosts.values():
-        ghost.step_alone(0)
-
-
-def _check_scene(scene: Scene) -> None:
-    """Raise :class:`StateError` if the arrays of a scene do not fit together."""
-    for name, array in scene.memory.items():
-        if not isinstance(name, str) or not isinstance(array, np.ndarray) or array.shape[:2] != scene.shape:
-            raise StateError(f"the memory {name!r} of people has no row for each person")
-    scene.check()
 
 
 def _part_worlds(world: Any) -> Iterator[tuple[str, Any]]:
@@ -113,45 +87,8 @@ def _structure_problem(simulation: Simulation) -> str:
     first = simulation.trial.people
     agents = [robot.agent for robot in simulation.robots]
     worlds = [world for _, world in _part_worlds(simulation.world)]
-    if agents != [first + k for k in range(len(agents))] or any(_has_other_robots(world, agents) for world in worlds):
+    if agents != [first + k for k in range(len(agents))] or any(world.has_other_robots(agents) for world in worlds):
         return "robots were added or removed while the simulation ran; its state cannot be stored from then on"
-    if any(_has_other_props(world, simulation) for world in worlds):
+    if any(world.has_other_props(simulation.template.trial.stage.physical().props) for world in worlds):
         return "props were added or removed while the simulation ran; its state cannot be stored from then on"
     return ""
-
-
-def _add_people(world: Any, state: Mapping[str, Any]) -> None:
-    """Add the slots and the bodies of people whom orders have added before a state."""
-    for path, item in _part_worlds(world):
-        stored = state.get(f"{path}/_traffic/ids")
-        agents = stored.shape[1] if isinstance(stored, np.ndarray) and stored.ndim == 2 else 0
-        if item.scene.shape[1] < agents <= MOST_AGENTS:
-            widen(item, agents)
-        for e, place, people in _bodies_of_people(path, item):
-            afoot = state.get(f"{place}/afoot")
-            for agent in afoot[len(people.afoot) :].tolist() if isinstance(afoot, np.ndarray) else ():
-                item.embody_person(agent, e)
-
-
-def _bodies_of_people(path: str, world: Any) -> list[tuple[int, str, Any]]:
-    """Return environment, path and object of the bodies of people."""
-    if world._bodies is not None:
-        return [(e, f"{path}/_bodies/{e}/people", bodies.people) for e, bodies in enumerate(world._bodies)]
-    return [] if world.people is None else [(0, f"{path}/people", world.people)]
-
-
-def _has_other_robots(world: Any, agents: list[int]) -> bool:
-    rigid = getattr(world, "rigid", None)
-    return bool(world.added_robots) or (rigid is not None and sorted(rigid.starts) != agents)
-
-
-def _has_other_props(world: Any, simulation: Simulation) -> bool:
-    if getattr(world, "rigid", None) is None:
-        return hasattr(world, "_prop_outlines")
-    now, begin = world.stage.props, simulation._template.trial.stage.physical().props
-    if world._prop_names != [f"prop{number}" for number in range(len(begin))] or len(now) != len(begin):
-        return True
-    try:
-        return bool(now != begin)
-    except ValueError:  # props of other classes may not be comparable; their names are as at the start
-        return False

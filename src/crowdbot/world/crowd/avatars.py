@@ -11,7 +11,6 @@ import numpy as np
 from crowdbot.core import InputError, Scene, Storage, tree
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
 from crowdbot.typing import Floats, Ints
-from crowdbot.world.planar_live_changes import people_motions
 from crowdbot.world.robots.drives.drive import Twists
 
 if TYPE_CHECKING:
@@ -140,7 +139,7 @@ class Avatars:
             crowd: scene after the step of the crowd.
             time: time at the end of the step [s], one or ``[E]``.
         """
-        after, motions = self.place(crowd, time), people_motions(world)
+        after, motions = self.place(crowd, time), world.people_motions
         earlier = self._skip_jumps(earlier, after, world.dt, ())
         before = self._skip_jumps(before, after, world.dt, motions)
         for motion, poses in zip(motions, self._poses(), strict=False):
@@ -199,7 +198,7 @@ class Avatars:
 
     def pose(self, world: Any) -> None:
         """Show the current poses of heads, hands and skeletons on the bodies of people."""
-        for motion, poses in zip(people_motions(world), self._poses(), strict=False):
+        for motion, poses in zip(world.people_motions, self._poses(), strict=False):
             motion.set_poses(poses)
             motion.take(motion.state)
 
@@ -258,6 +257,6 @@ def give_pose(world: Any, name: str, time: float, pose: BodyPose, environment: i
     before = own.scene
     placed = avatars.place(before, now if own is world else now[environment])
     own.scene = placed
-    for e, motion in enumerate(people_motions(own)):
+    for e, motion in enumerate(own.people_motions):
         for agent in avatars.agents.tolist():
             motion.move(agent, *(placed.position[e, agent] - before.position[e, agent]).tolist())

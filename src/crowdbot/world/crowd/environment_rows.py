@@ -1,4 +1,4 @@
-"""Rows of environments: scenes and crowd models of several worlds as the environments of one."""
+"""Rows of environments: scenes, models and commands of several worlds as the environments of one."""
 
 from __future__ import annotations
 
@@ -9,11 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, tree
+from crowdbot.core import Scene, Twist, tree
 from crowdbot.models import CrowdModel, Mixture
+from crowdbot.world.robots.drives.drive import Twists
+from crowdbot.world.robots.drives.servo import Pending
 
 FILLS = {"radius": 0.25, "group": -1, "external": True, "visible": True}
 """Values of the slots that pad a scene. They are external, so that nobody enters in them."""
+
+
+Delayed = dict[int, tuple[tuple[Pending, ...], Twist | Twists]]
+"""Pending commands and command in force of robots, by agent."""
 
 
 def works_in_batches(model: CrowdModel) -> bool:
@@ -51,6 +57,37 @@ def align_scenes(scenes: Sequence[Scene]) -> list[Scene]:
     return rows
 
 
+def align_twists(twists: Sequence[Twists]) -> list[Twists]:
+    """Twists of a robot in several worlds, of one class: a car has a steering angle after its first step, 0 before."""
+    kind = max(map(type, twists), key=lambda one: len(dataclasses.fields(one)))
+    names = [field.name for field in dataclasses.fields(kind) if field.init]
+    return [
+        twist if type(twist) is kind else kind(*(getattr(twist, name, np.zeros_like(twist.forward)) for name in names))
+        for twist in twists
+    ]
+
+
+def align_delays(all_delayed: Sequence[Delayed], counts: Sequence[int]) -> list[Delayed]:
+    """Delayed commands of worlds, equally many; robots without pending commands stand still until their first one.
+
+    Args:
+        all_delayed: delayed commands of each world.
+        counts: number of environments of each world.
+    """
+    rows: list[Delayed] = [{} for _ in counts]
+    for robot in {robot for delayed in all_delayed for robot in delayed}:
+        delays = [delayed.get(robot, ((), Twist())) for delayed in all_delayed]
+        longest = max((pending for pending, _ in delays), key=len)
+        for row, count, (pending, now) in zip(rows, counts, delays, strict=True):
+            commands = [Twist()] * (len(longest) - len(pending)) + [item.command for item in pending]
+            both = zip(longest, commands, strict=True)
+            row[robot] = (
+                tuple(Pending(item.wait, Twists.of(command, count)) for item, command in both),
+                Twists.of(now, count),
+            )
+    return rows
+
+
 def with_common_time(scene: Scene, first: Scene) -> Scene:
     """Scene with the bodies of the first one, and with one number as its time if all environments agree."""
     time = scene.time
@@ -72,14 +109,6 @@ def pad_ids(ids: NDArray[np.int64], agents: int) -> NDArray[np.int64]:
         return ids
     least = np.minimum(ids.min(axis=1, initial=0), 0)[:, None]
     return np.concatenate([ids, least - 1 - np.arange(more)], axis=1)
-
-
-def set_models(world: Any, models: list[Any]) -> None:
-    """Set the model of each environment, as one model if a call for all equals a call for each."""
-    joined = join_models(models, world.scene.shape[1])
-    world._models = models
-    world.joined = joined is not None
-    world.model = models[0] if joined is None else joined
 
 
 def join_models(models: Sequence[CrowdModel], agents: int) -> CrowdModel | None:

@@ -31,7 +31,7 @@ class Doors:
 
     Args:
         leaves: the doors.
-        pushed: whether doors that open by push are moved by an engine, so that :meth:`set_share` sets them.
+        pushed: whether doors that open by push are moved by an engine, so that :meth:`read_leaves` sets them.
 
     Attributes:
         leaves: the doors.
@@ -96,9 +96,23 @@ class Doors:
         """Share ``[D]`` of each door times its side."""
         return self.side * self.share
 
-    def set_share(self, number: int, share: float) -> None:
-        """Set a door that the engine moves."""
-        self.share[number] = share
+    def turn_leaves(self, model: Any, data: Any, fraction: float, dt: float) -> None:
+        """Set the joints of all leaves in an engine that people do not push, at a fraction of a step of ``dt`` [s]."""
+        for k, leaf in enumerate(self.leaves):
+            if leaf.opening == "push":
+                continue
+            joint = model.joint(f"door{k}")
+            share = self.start[k] + fraction * (self.share[k] - self.start[k])
+            way = self.side[k] * leaf.range
+            data.qpos[joint.qposadr[0]] = share * way
+            data.qvel[joint.dofadr[0]] = (self.share[k] - self.start[k]) / dt * way
+
+    def read_leaves(self, model: Any, data: Any) -> None:
+        """Set the share of the leaves that people push from an engine."""
+        for k, leaf in enumerate(self.leaves):
+            if leaf.opening == "push":
+                angle = float(data.qpos[model.joint(f"door{k}").qposadr[0]])
+                self.share[k] = float(np.clip(angle / leaf.range, -1.0, 1.0))
 
     def lines(self) -> tuple[Floats, ...]:
         """Return the lines ``[2, 2]`` [m] of all leaves that are walls now; doors that people push are none."""

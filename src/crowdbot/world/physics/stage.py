@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.core import Element, InputError
+from crowdbot.core import Element, InputError, did_you_mean
 from crowdbot.core.fields import attribute, check
 from crowdbot.typing import Floats
 from crowdbot.world.buildings.building import Building
@@ -270,3 +272,41 @@ def without_prop(stage: PhysicsStage, number: int) -> PhysicsStage:
     while props and isinstance(props[-1], AbsentProp):
         props.pop()
     return replace(stage, props=tuple(props))
+
+
+def new_prop_name(names: Sequence[str], name: str) -> str:
+    """Return the name of a new prop, ``prop`` with its number by default.
+
+    Raises:
+        InputError: the name is taken.
+    """
+    numbers = (f"prop{k}" for k in itertools.count(len(names)))
+    name = name or next(number for number in numbers if number not in names)
+    if name in names:
+        raise InputError(f"there is already a prop {name!r}; names of props must differ")
+    return name
+
+
+def prop_number(names: Sequence[str], name: str) -> int:
+    """Return the number of a prop.
+
+    Raises:
+        InputError: there is no prop of this name.
+    """
+    if not name or name not in names:
+        known = [name for name in names if name]
+        meant = did_you_mean(name, known)
+        raise InputError(f"there is no prop {name!r}{meant}; props are {', '.join(known) or 'none'}")
+    return list(names).index(name)
+
+
+def without_prop_name(names: Sequence[str], number: int) -> list[str]:
+    """Return the names of the props on a stage :func:`without_prop`.
+
+    >>> without_prop_name(["table", "chair"], 0), without_prop_name(["", "chair"], 1)
+    (['', 'chair'], [])
+    """
+    left = [*names[:number], "", *names[number + 1 :]]
+    while left and not left[-1]:
+        left.pop()
+    return left

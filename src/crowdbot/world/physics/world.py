@@ -17,19 +17,10 @@ from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats, Ints
 from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.doors.doors import Doors
-from crowdbot.world.doors.motion import read_leaves, turn_leaves
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.physics.robots.mirrored_robots import MirroredRobots
 from crowdbot.world.physics.robots.robot_height import stand_robot
 from crowdbot.world.planar import PlanarWorld
-from crowdbot.world.planar_live_changes import (
-    new_prop_name,
-    prop_number,
-    put_robot_at,
-    remove_robot_at,
-    robot_environments,
-    without_last,
-)
 from crowdbot.world.pushes import acting_pushes, keep_pushes
 from crowdbot.world.rendering.camera import CameraImages, SceneCamera
 from crowdbot.world.rendering.renderer import Renderer
@@ -55,7 +46,7 @@ from .rider import seat_rider
 from .robots.mirrored_robots import kinematic_bases
 from .robots.robot_body import RobotBody
 from .scenery import add_rings, outline_props
-from .stage import AbsentProp, PhysicsStage, PropBody, without_prop
+from .stage import AbsentProp, PhysicsStage, PropBody, new_prop_name, prop_number, without_prop, without_prop_name
 from .world_bodies import WorldBodies
 
 if TYPE_CHECKING:
@@ -220,6 +211,10 @@ class PhysicsWorld(PlanarWorld):
     def falls(self) -> tuple[Fall, ...]:
         return () if self.falling is None else self.falling.falls
 
+    @property
+    def people_motions(self) -> list[PeopleMotion]:
+        return [self.people]
+
     def limbs(self) -> LimbCapsules:
         """Return the current limb capsules of all people."""
         return self.people.limbs(self.scene.active[0])
@@ -324,6 +319,20 @@ class PhysicsWorld(PlanarWorld):
         kept = {name: getattr(before, name) for name in ("walls", "external", "preferred_speed", "max_speed")}
         return earlier.replace(**kept), crowd.replace(**kept)
 
+    def _show_leaves(self, doors: Doors) -> None:
+        self._outlined = doors.update_walls(self._outlined)
+        self._plane = None
+
+    def _people_path(self, environment: int) -> str:
+        return "people"
+
+    def finish_restore(self) -> None:
+        with self.rigid.engine_steps():
+            pass  # computes the frames of all bodies, and gives the models the limbs of people as after a step
+        for ghost in self.rigid.ghosts.values():
+            ghost.step_alone(0)
+        super().finish_restore()
+
     def _fixed_walls(self, scene: Scene) -> Walls:
         return self._outlined
 
@@ -367,13 +376,13 @@ class PhysicsWorld(PlanarWorld):
             led.go(1.0)
         for ghost in self.rigid.ghosts.values():
             if self.doors is not None:
-                turn_leaves(self.doors, ghost.compiled.base, ghost.data, 1.0, self.dt)
+                self.doors.turn_leaves(ghost.compiled.base, ghost.data, 1.0, self.dt)
             ghost.step_alone(self._steps)
             if led.twists:
                 led.go(1.0)
                 ghost.step_alone(0)  # the frames follow
         if self.doors is not None:
-            read_leaves(self.doors, self.rigid.main.compiled.base, self.data)
+            self.doors.read_leaves(self.rigid.main.compiled.base, self.data)
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
         scene = self._lead_robots(before, after, scene)
@@ -430,7 +439,7 @@ class PhysicsWorld(PlanarWorld):
         if self.rigid.links:
             self.rigid.links.begin(model, data)
         if self.doors is not None:
-            turn_leaves(self.doors, model, data, share, self.dt)
+            self.doors.turn_leaves(model, data, share, self.dt)
         mj.mj_step1(model, data)
         self.rigid.main.apply_friction(model)
         self.rigid.main.compiled.servos.apply(data)
@@ -508,6 +517,9 @@ class PhysicsWorld(PlanarWorld):
             InputError: the agent is not a robot, a joint has no motor or is a wheel, or a value is not finite.
         """
         self.robot_body(robot).command(joints)
+
+    def move_joint(self, robot: int, joint: str, position: float, environment: int = 0) -> None:
+        self.robot_body(robot).hold(joint, position)
 
     def robot_body(self, robot: int) -> RobotBody:
         """Return the body of a robot.
@@ -600,21 +612,20 @@ class PhysicsWorld(PlanarWorld):
             starts = {**self.rigid.starts, agent: RobotStart(agent, robot, *place)}
             self.rigid.change(starts=starts, ghosts=[*self.rigid.ghosts, *([agent] if ghost else [])])
             self._at[agent] = place
-        put_robot_at(self, agent, robot, place, ghost, environments)
+        self._start_robot(agent, robot, place, ghost, environments)
         if self.falling is not None:
             self.falling.grow(self.people, self.scene.shape[1])
         self._forget()
 
     def remove_robot(self, agent: int, environments: Sequence[int] | None = None) -> None:
-        chosen = robot_environments(self, agent, environments)
+        chosen = self._environments_with(agent, environments)
         self.rigid.change(starts={item: start for item, start in self.rigid.starts.items() if item != agent})
-        remove_robot_at(self, agent, chosen)
+        self._take_away(agent, chosen)
         self._forget()
 
     @property
     def prop_names(self) -> list[str]:
-        """Names of the props on the stage, in their order."""
-        return [name for name in self._prop_names if name]
+        return self._prop_names
 
     def add_prop(self, prop: PropBody, name: str = "") -> str:
         name = new_prop_name(self._prop_names, name)
@@ -623,10 +634,21 @@ class PhysicsWorld(PlanarWorld):
         return name
 
     def remove_prop(self, name: str) -> None:
-        names = self._prop_names
-        number = prop_number(names, name)
+        number = prop_number(self._prop_names, name)
         self._change_stage(without_prop(self.stage, number))
-        self._prop_names = without_last([*names[:number], "", *names[number + 1 :]])
+        self._prop_names = without_prop_name(self._prop_names, number)
+
+    def has_other_robots(self, robots: Sequence[int]) -> bool:
+        return super().has_other_robots(robots) or sorted(self.rigid.starts) != list(robots)
+
+    def has_other_props(self, props: Sequence[PropBody]) -> bool:
+        now = self.stage.props
+        if self._prop_names != [f"prop{number}" for number in range(len(props))] or len(now) != len(props):
+            return True
+        try:
+            return bool(now != props)
+        except ValueError:  # props of other classes may not be comparable; their names are as at the start
+            return False
 
     def change_walls(self, walls: Walls) -> None:
         """Replace the walls, without the outlines of props; see :class:`World`."""

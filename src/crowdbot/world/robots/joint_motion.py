@@ -1,4 +1,4 @@
-"""Motion of the joints of robots in a world: checks of a target, and the target itself."""
+"""Joints of robots that can be given a target, and checks of a target."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 from crowdbot.core import InputError, did_you_mean
 
 if TYPE_CHECKING:
-    from crowdbot.world.world import World
-
     from .robot import Robot
 
 
@@ -47,25 +45,3 @@ def check_joint(robot: Robot, joint: str, position: float) -> None:
             f"the joint {joint!r} of {robot.name} cannot be at {position:g} {unit}; it moves from"
             f" {found.lower:g} to {found.upper:g} {unit}"
         )
-
-
-def move_joint(world: World, robot: int, joint: str, position: float, environment: int = 0) -> None:
-    """Give a joint of a robot a target position [rad or m], which is kept until it is replaced.
-
-    In the physics world, the position motor of the joint moves it; a joint without one moves there at its maximum speed
-    and is held. In the plane, the bodies of the robot for sensors and cameras are in the new posture at once; without
-    bodies, nothing changes.
-
-    Args:
-        world: the world.
-        robot: index of the robot.
-        joint: name of the joint; :func:`check_joint` has passed.
-        position: target [rad or m].
-        environment: index of the environment.
-    """
-    own, row = world.part(environment)
-    if world.walls_fixed:
-        own.robot_body(robot).hold(joint, position)
-    elif own._bodies is not None:
-        bodies = own._bodies[row]
-        bodies.joints = {**bodies.joints, robot: {**bodies.joints.get(robot, {}), joint: position}}
