@@ -24,7 +24,6 @@ from crowdbot.core import Scene, Walls
 from crowdbot.typing import Floats
 from crowdbot.world.physics.robots.base_servo import release_base_motors
 from crowdbot.world.physics.robots.robot_body import RobotBody
-from crowdbot.world.physics.robots.robot_height import is_level
 from crowdbot.world.physics.robots.wheel_servo import WheelServos
 from crowdbot.world.robots.robot import Robot
 
@@ -258,7 +257,7 @@ class CompiledBodies:
     @functools.cached_property
     def rest_state(self) -> Any:
         """State in which the robots rest on the floor at their starts, and props at theirs."""
-        mj, design = engine(), self.design
+        mj, design, ground = engine(), self.design, self.design.stage.ground
         data = copy.copy(self.first)
         robots = [
             (RobotBody(self.base, data, start.robot, self.built.prefixes[start.agent], design.step), start)
@@ -270,7 +269,8 @@ class CompiledBodies:
                 body.put(start.x, start.y, start.heading)
             mj.mj_step(model, data, round(SETTLING / design.step))
             for body, start in robots:
-                if is_level(design.stage.ground, start):
+                # on uneven ground a robot keeps the pose in which it rests
+                if ground is None or ground.is_level(start.x, start.y, start.robot.radius):
                     body.put(start.x, start.y, start.heading)
             data.time = 0.0
             mj.mj_forward(model, data)

@@ -10,7 +10,7 @@ import numpy as np
 
 from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
-from crowdbot.world.physics.robots.robot_height import base_height
+from crowdbot.world.ground.ground import Ground
 from crowdbot.world.robots.drives.ackermann import AckermannDrive, TricycleDrive
 from crowdbot.world.robots.drives.skid_steer import SkidSteerDrive
 from crowdbot.world.robots.robot import Robot
@@ -278,3 +278,10 @@ def _person(slot: int) -> Element:
 LIMB_COUNT = len(LIMBS)
 LIMB_NAMES = tuple(limb.name for limb in LIMBS)
 LIMB_PARTS = np.array([("head", "torso", "arm", "leg").index(limb.region) for limb in LIMBS])
+
+
+def base_height(ground: Ground | None, scene: Scene, agent: int, robot: Robot) -> float:
+    """Return the height [m] of the root of a robot at its place in a scene, on the highest ground under it."""
+    if ground is None:
+        return robot.lift
+    return robot.lift + float(ground.support(scene.position[0, agent], robot.radius))

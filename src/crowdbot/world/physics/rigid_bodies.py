@@ -76,7 +76,7 @@ class RigidBodies:
     def step_alone(self, steps: int) -> None:
         """Advance by engine steps, without people."""
         mj = engine()
-        links = LinkForces(self.robots.values(), self.design.step)
+        links = LinkForces(self.compiled.base, self.robots.values(), self.design.step)
         with self.compiled.borrow() as model:
             for _ in range(steps):
                 links.note(self.data)

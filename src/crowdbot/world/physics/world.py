@@ -19,7 +19,6 @@ from crowdbot.world.crowd.ghosts import hide_ghosts
 from crowdbot.world.doors.doors import Doors
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.physics.robots.mirrored_robots import MirroredRobots
-from crowdbot.world.physics.robots.robot_height import stand_robot
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.pushes import acting_pushes, keep_pushes
 from crowdbot.world.rendering.camera import CameraImages, SceneCamera
@@ -39,7 +38,7 @@ from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody
 from .engine import engine
 from .engine_models import RobotStart, motors_of
-from .mjcf_model import MjcfModel
+from .mjcf_model import MjcfModel, base_height
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .rider import seat_rider
@@ -301,11 +300,10 @@ class PhysicsWorld(PlanarWorld):
         self._at = {a: (start.x, start.y, start.heading) for a, start in starts.items()}
 
     def _put(self, agent: int, scene: Scene) -> None:
-        x, y = scene.position[0, agent]
-        self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
-        if self.stage.ground is not None:
-            stand_robot(self.robot_bodies[agent], self.stage.ground, float(x), float(y))
-        self._at[agent] = (float(x), float(y), float(scene.heading[0, agent]))
+        body, ground = self.robot_bodies[agent], self.stage.ground
+        self._at[agent] = (*scene.position[0, agent].tolist(), float(scene.heading[0, agent]))
+        height = None if ground is None else base_height(ground, scene, agent, body.robot)
+        body.put(*self._at[agent], height=height)
 
     def _step_crowd(self, before: Scene) -> tuple[Scene, Scene]:
         start = before.replace(walls=self._outlined)

@@ -145,7 +145,7 @@ class WorldBodies:
         }
         self.robots = dict(sorted(self.robots.items()))
         compiled = self.main.compiled
-        self.links = LinkForces(self.main.robots.values(), self.step)
+        self.links = LinkForces(compiled.base, self.main.robots.values(), self.step)
         self.reader = ContactReader(
             compiled.base, self.main.data, compiled.geoms, self.people.agent_of, self.people.swing_of
         )

@@ -26,9 +26,9 @@ class _MovedJoint(NamedTuple):
     fastest: float
 
     @classmethod
-    def of(cls, body: RobotBody, name: str) -> _MovedJoint:
+    def of(cls, model: Any, body: RobotBody, name: str) -> _MovedJoint:
         """Return a joint of a robot."""
-        model, mj, above = body._model, engine(), body.robot.model.joints[name]
+        mj, above = engine(), body.robot.model.joints[name]
         joint = model.joint(body.prefix + name)
         motor = int(mj.mj_name2id(model, mj.mjtObj.mjOBJ_ACTUATOR, body.prefix + name))
         if motor >= 0 and model.actuator_biasprm[motor, 1] == 0.0:
@@ -45,35 +45,36 @@ class LinkForces:
     :meth:`begin`, and :meth:`end` after it. Links fixed to each other are one body, to which each drag applies.
 
     Args:
+        model: model of the engine.
         bodies: bodies of the robots.
         step: time step of the engine [s].
     """
 
-    def __init__(self, bodies: Iterable[RobotBody], step: float) -> None:
-        self.step, self._bodies = step, tuple(bodies)
+    def __init__(self, model: Any, bodies: Iterable[RobotBody], step: float) -> None:
+        self.step, self._model, self._bodies = step, model, tuple(bodies)
         self._drags: list[tuple[int, float, float]] = []
         self._joints: dict[str, _MovedJoint] = {}
         self._held: dict[str, tuple[_MovedJoint, float]] = {}
         self._next: list[tuple[int, int, float, float]] = []
         for body in self._bodies:
             for link in body.robot.links:
-                index = int(body._model.site(body.prefix + link.name).bodyid[0])
+                index = int(model.site(body.prefix + link.name).bodyid[0])
                 if link.drag or link.angular_drag:
                     self._drags.append((index, link.drag, link.angular_drag))
                 if link.kinematic:
                     above = next(joint for joint in body.robot.model.joints.values() if joint.child == link.name)
-                    self._joints[body.prefix + above.name] = _MovedJoint.of(body, above.name)
+                    self._joints[body.prefix + above.name] = _MovedJoint.of(model, body, above.name)
 
     def __bool__(self) -> bool:
         """Return whether a link has a drag or is kinematic, or a joint is held."""
-        return bool(self._drags or self._joints or any(body._held for body in self._bodies))
+        return bool(self._drags or self._joints or any(body.held for body in self._bodies))
 
     def note(self, data: Any) -> None:
         """Note where held joints are, before their bodies put them at their targets."""
         self._held = {}
         for body in self._bodies:
-            for name in body._held:
-                joint = self._joints.get(name) or _MovedJoint.of(body, name.removeprefix(body.prefix))
+            for name in body.held:
+                joint = self._joints.get(name) or _MovedJoint.of(self._model, body, name.removeprefix(body.prefix))
                 self._held[name] = (joint, float(data.qpos[joint.place]))
 
     def begin(self, model: Any, data: Any) -> None:
@@ -83,7 +84,7 @@ class LinkForces:
         self._next = []
         for name in sorted(self._joints.keys() | self._held.keys()):
             joint, now = self._held.get(name) or (self._joints[name], float(data.qpos[self._joints[name].place]))
-            goal = float(data.ctrl[joint.motor]) if joint.motor >= 0 else joint.body._held.get(name, now)
+            goal = float(data.ctrl[joint.motor]) if joint.motor >= 0 else joint.body.held.get(name, now)
             speed = min(max((goal - now) / self.step, -joint.fastest), joint.fastest)
             data.qpos[joint.place], data.qvel[joint.dof] = now, speed
             self._next.append((joint.place, joint.dof, now + speed * self.step, speed))

@@ -64,32 +64,14 @@ class _MirroredBase:
         heading = start[2] + 0.5 * turn
         cos, sin = math.cos(heading), math.sin(heading)
         self.twist = Twist(cos * self.vx + sin * self.vy, self.turn, cos * self.vy - sin * self.vx)
-        model, self._data = body._model, body._data
-        names = {model.joint(k).name for k in range(model.njnt)}
-        self._planar = f"{body.prefix}base" not in names
-
-        def column(name: str) -> tuple[int, int]:
-            joint: Any = model.joint(body.prefix + name)
-            return int(joint.qposadr[0]), int(joint.dofadr[0])
-
-        self._base = [column(name) for name in (("base_x", "base_y", "base_yaw") if self._planar else ("base",))]
-        self._height = 0.0 if self._planar else float(self._data.qpos[self._base[0][0] + 2])
-        speeds = body.robot.wheel_speeds(self.twist)
-        self._wheels = [(column(name)[1], speed) for name, speed in speeds.items() if f"{body.prefix}{name}" in names]
+        self._body, self._height = body, body.height
+        self._wheels = body.robot.wheel_speeds(self.twist)
 
     def go(self, time: float) -> None:
         """Set pose and velocity at a time [s] after the start."""
         x, y, heading = self.start[0] + time * self.vx, self.start[1] + time * self.vy, self.start[2] + time * self.turn
-        place, speed = self._data.qpos, self._data.qvel
-        if self._planar:
-            for (row, dof), value, rate in zip(self._base, (x, y, heading), (self.vx, self.vy, self.turn), strict=True):
-                place[row], speed[dof] = value, rate
-        else:
-            row, dof = self._base[0]
-            place[row : row + 7] = x, y, self._height, math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)
-            speed[dof : dof + 6] = self.vx, self.vy, 0.0, 0.0, 0.0, self.turn
-        for dof, rate in self._wheels:
-            speed[dof] = rate
+        self._body.put(x, y, heading, (self.vx, self.vy, self.turn), self._height)
+        self._body.turn_joints(self._wheels)
 
 
 class KinematicBase:

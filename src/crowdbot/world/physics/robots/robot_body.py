@@ -158,7 +158,7 @@ class RobotBody:
     storage = Storage(
         constants=(
             "robot", "prefix", "step", "_model", "_data", "_mj", "body", "_sites", "_servo", "_wheels", "_steers",
-            "_step_robots", "_rolling", "_delay", "_slip", "friction", "_forces", "_lag", "_base",
+            "_step_robots", "_rolling", "_delay", "_slip", "friction", "_forces", "_lag", "_base", "_rows",
         ),
     )  # fmt: skip
 
@@ -198,6 +198,11 @@ class RobotBody:
         named = [wheel.joint for wheel in robot.wheels if wheel.driven]
         named += [wheel.steering for wheel in robot.wheels if wheel.steering]
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
+        self._rows: dict[str, tuple[int, int]] = {}
+        for joint in robot.model.joints.values():
+            index = self._mj.mj_name2id(model, self._mj.mjtObj.mjOBJ_JOINT, prefix + joint.name)
+            if joint.size == 1 and index >= 0:
+                self._rows[joint.name] = int(model.jnt_qposadr[index]), int(model.jnt_dofadr[index])
         self.friction = WheelFriction(model, robot, prefix)
 
     def prepare(self) -> None:
@@ -243,19 +248,48 @@ class RobotBody:
         aside = 2.0 * (x * y - w * z) * vx + (1.0 - 2.0 * (x * x + z * z)) * vy + 2.0 * (y * z + w * x) * vz
         return Twist(ahead, turn, left=aside)
 
-    def put(self, x: float, y: float, heading: float) -> None:
-        """Place the robot upright and at rest; joint positions and height are unchanged."""
-        model, data = self._model, self._data
+    @property
+    def height(self) -> float | None:
+        """Height of the root of a robot on wheels [m]; None for a pulled base, which keeps its height."""
+        return None if self._servo else float(self._data.qpos[self._free[0] + 2])
+
+    @property
+    def held(self) -> Mapping[str, float]:
+        """Targets [rad or m] of the joints without a position motor, by name in the engine; see :meth:`hold`."""
+        return self._held
+
+    def put(
+        self,
+        x: float,
+        y: float,
+        heading: float,
+        velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        height: float | None = None,
+    ) -> None:
+        """Place the robot upright; joint positions are unchanged.
+
+        Args:
+            x, y, heading: place [m] and heading [rad].
+            velocity: velocity of the base in the world: x, y [m/s], turn rate [rad/s].
+            height: height of the root of a robot on wheels [m]; None: unchanged.
+        """
+        place, speed = self._data.qpos, self._data.qvel
         if self._servo:
-            for name, value in (("base_x", x), ("base_y", y), ("base_yaw", heading)):
-                joint = model.joint(self.prefix + name)
-                data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = value, 0.0
+            rows, dofs = self._base
+            place[rows], speed[dofs] = (x, y, heading), velocity
             return
-        joint = model.joint(f"{self.prefix}base")
-        first = int(joint.qposadr[0])
-        data.qpos[first : first + 2] = x, y
-        data.qpos[first + 3 : first + 7] = math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)
-        data.qvel[joint.dofadr[0] : joint.dofadr[0] + 6] = 0.0
+        row, dof = self._free
+        place[row : row + 2] = x, y
+        if height is not None:
+            place[row + 2] = height
+        place[row + 3 : row + 7] = math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)
+        speed[dof : dof + 6] = velocity[0], velocity[1], 0.0, 0.0, 0.0, velocity[2]
+
+    def turn_joints(self, speeds: Mapping[str, float]) -> None:
+        """Set the speeds [rad/s or m/s] of joints, as far as the engine has them."""
+        for joint, speed in speeds.items():
+            if joint in self._rows:
+                self._data.qvel[self._rows[joint][1]] = speed
 
     def ask(self, command: Twist | Twists) -> None:
         """Set the command for the next step of the world."""
@@ -315,8 +349,8 @@ class RobotBody:
         (angles, speeds), (now, after) = self._wheel_motion(old), self._wheel_motion(aim)
         lead = self._lag / self.step
         for joint, value in now.items():
-            row = self._model.joint(self.prefix + joint)
-            angle, rate = float(self._data.qpos[row.qposadr[0]]), float(self._data.qvel[row.dofadr[0]])
+            row, dof = self._rows[joint]
+            angle, rate = float(self._data.qpos[row]), float(self._data.qvel[dof])
             goal = (value - angles[joint]) / self.step + (angles[joint] - angle) / self._lag
             self._data.ctrl[self._wheels[joint]] = rate + lead * (goal - rate)
         for joint, value in after.items():
@@ -354,13 +388,8 @@ class RobotBody:
 
     def joints(self) -> dict[str, tuple[float, float]]:
         """Return position and velocity of each joint with one coordinate."""
-        result = {}
-        for joint in self.robot.model.joints.values():
-            index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + joint.name)
-            if joint.size == 1 and index >= 0:
-                place, speed = self._model.jnt_qposadr[index], self._model.jnt_dofadr[index]
-                result[joint.name] = (float(self._data.qpos[place]), float(self._data.qvel[speed]))
-        return result
+        place, speed = self._data.qpos, self._data.qvel
+        return {joint: (float(place[row]), float(speed[dof])) for joint, (row, dof) in self._rows.items()}
 
     def frame(self, link: str) -> Floats:
         """Return the frame ``[4, 4]`` of a link in the world.
@@ -401,11 +430,9 @@ class RobotBody:
 
     def _posed(self) -> None:
         """Set the joints to the posture of the robot, held by their motors."""
-        model = self.robot.model
-        for name, value in model.positions(self.robot.posture).items():
-            index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + name)
-            if index >= 0 and model.joints[name].size == 1:
-                self._data.qpos[self._model.jnt_qposadr[index]] = value[0]
+        for name, value in self.robot.model.positions(self.robot.posture).items():
+            if name in self._rows:
+                self._data.qpos[self._rows[name][0]] = value[0]
         for name, position in self.robot.posture.items():
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + name)
             if index >= 0:
