@@ -8,7 +8,7 @@ import pytest
 from robot_texts import BALL, joint, link, robot
 
 from crowdbot.cli import main
-from crowdbot.core import InputError, RobotError
+from crowdbot.core import InputError, Pose, RobotError
 from crowdbot.sensors import Gaussian, Lidar2D, preset
 from crowdbot.world import AckermannDrive, Robot, SensorMount, VelocityServo, Wheel, read_urdf
 
@@ -49,8 +49,9 @@ def test_everything_in_the_file_is_read(tmp_path):
     eye = mine.mount("eye")
     assert eye == SensorMount("eye", Lidar2D(rays=90, noise=Gaussian(0.02)), "head", x=0.1, z=0.2, yaw=1.0)
     np.testing.assert_allclose(mine.sensor_frame("eye")[:3, 3], [0.1 + 0.1 * np.cos(0.5), 0.1 * np.sin(0.5), 1.2])
-    assert mine.planar_mount("eye")[2] == pytest.approx(1.5)
-    assert mine.planar_mount("foot") == (0.0, 0.0, 0.0)
+    here = Pose.of((0.0, 0.0), 0.0)
+    assert mine.sensor_pose("eye", here).heading[0] == pytest.approx(1.5)
+    assert mine.sensor_pose("foot", here).planar.position.tolist() == [[0.0, 0.0]]
     assert Robot.load(tmp_path / "robot.xml").drive == mine.drive
 
 

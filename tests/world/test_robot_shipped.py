@@ -60,9 +60,9 @@ def test_they_stand_on_the_ground_and_see_from_inside_their_height(name):
     for mount in robot.mounts:
         matrix = robot.sensor_frame(mount.name)
         assert 0.0 <= matrix[2, 3] <= robot.height + 0.05
-        x, y, heading = robot.planar_mount(mount.name)
         pose = Pose.of((1.0, 2.0), 0.5)
-        flat, deep = pose.offset(x, y, heading), robot.sensor_pose(mount.name, pose)
+        heading = np.arctan2(matrix[1, 0], matrix[0, 0])
+        flat, deep = pose.offset(matrix[0, 3], matrix[1, 3], heading), robot.sensor_pose(mount.name, pose)
         assert deep.position[:, :2] == pytest.approx(flat.position)
         scene = Scene.of([[9.0, 9.0]])
         for place in (flat, deep):

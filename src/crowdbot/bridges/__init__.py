@@ -59,7 +59,7 @@ from .port import BridgePort, steered_trial
 from .run_control import MODES, BridgeClock, CommandLatency, LatencySummary, Pace, RunControl
 from .simulation_services import PLAIN_SERVICES, PlainService
 from .stack_link import open_stack
-from .transport import TRANSPORTS, Transport, open_transport
+from .transport import TRANSPORTS, Transport, is_among, open_transport
 
 __all__ = [
     "MODES",
@@ -100,6 +100,7 @@ __all__ = [
     "Transport",
     "fields_of",
     "interface_store",
+    "is_among",
     "joined_trial",
     "message_of",
     "open_real_robot",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, Self, TypeVar
@@ -21,7 +22,7 @@ MOST_STEPS = 200
 Session = TypeVar("Session", bound=SocketSession)
 
 
-class SessionGraph:
+class SessionGraph(ABC):
     """What the clients of a server see; used in the thread of the server, but for :attr:`wanted` and :attr:`now`.
 
     Args:
@@ -48,13 +49,13 @@ class SessionGraph:
         """Return whether clients may use a topic or service."""
         return self.allowed is None or any(fnmatch.fnmatchcase(name, pattern) for pattern in self.allowed)
 
+    @abstractmethod
     def change(self, interface: RobotInterface) -> None:
         """Announce other topics and services to the clients."""
-        raise NotImplementedError
 
+    @abstractmethod
     def deliver(self, messages: Sequence[Any]) -> None:
         """Give the messages of a step to the clients that subscribe their topics."""
-        raise NotImplementedError
 
 
 class SocketTransport(Generic[Session]):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .detector import Coverage, Detections, Detector
     from .moving_people import MovingPeople
     from .scan_network import NetworkFit, ScanNetwork, train_scan_network
-    from .scan_odometry import OdometryState, ScanOdometry
+    from .scan_odometry import ScanOdometry, ScanOdometryState
     from .scan_prediction import (
         LastScan,
         LearnedScene,
@@ -64,11 +64,11 @@ __all__ = [
     "MovingPeople",
     "NetworkFit",
     "NetworkPeople",
-    "OdometryState",
     "PredictorMotion",
     "ScanForecast",
     "ScanNetwork",
     "ScanOdometry",
+    "ScanOdometryState",
     "ScanPredictor",
     "SceneState",
     "TrackedScene",

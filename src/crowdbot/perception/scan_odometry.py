@@ -27,7 +27,7 @@ SURFACE = 0.25
 
 
 @dataclass(frozen=True)
-class OdometryState:
+class ScanOdometryState:
     """State of :class:`ScanOdometry`.
 
     Fields:
@@ -82,7 +82,7 @@ class ScanOdometry:
             check_number(name, word, getattr(self, word), unit, exclusive_min=0.0)
         check_number(name, "overlap", self.overlap, min=0.0, max=1.0)
 
-    def update(self, reading: Reading, state: OdometryState | None = None) -> tuple[Pose, OdometryState]:
+    def update(self, reading: Reading, state: ScanOdometryState | None = None) -> tuple[Pose, ScanOdometryState]:
         """Return the pose of the scanner, relative to that of the first scan, and the next state.
 
         Args:
@@ -99,17 +99,17 @@ class ScanOdometry:
         points, normals, flat = _surfaces(reading)
         if state is None:
             zero = np.zeros(3)
-            return _pose(zero), OdometryState(points[flat], normals[flat], zero, zero, zero)
+            return _pose(zero), ScanOdometryState(points[flat], normals[flat], zero, zero, zero)
         guess = _compose(_inverse(state.key), _compose(state.pose, state.step))
         relative, overlap = self._match(state, points, guess)
         pose = _compose(state.key, relative)
         step = _compose(_inverse(state.pose), pose)
         far = math.hypot(relative[0], relative[1]) > self.distance or abs(relative[2]) > self.turn
         if far or overlap < self.overlap:
-            return _pose(pose), OdometryState(points[flat], normals[flat], pose, pose, step)
-        return _pose(pose), OdometryState(state.points, state.normals, state.key, pose, step)
+            return _pose(pose), ScanOdometryState(points[flat], normals[flat], pose, pose, step)
+        return _pose(pose), ScanOdometryState(state.points, state.normals, state.key, pose, step)
 
-    def _match(self, state: OdometryState, points: Floats, guess: Floats) -> tuple[Floats, float]:
+    def _match(self, state: ScanOdometryState, points: Floats, guess: Floats) -> tuple[Floats, float]:
         """Return the pose in the frame of the key scan, and the share of the points that have a partner there."""
         from scipy.spatial import cKDTree
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from crowdbot.bridges import CommandLatency, Inbox, RobotInterface, Transport, open_transport
+from crowdbot.bridges import CommandLatency, Inbox, RobotInterface, Transport, is_among, open_transport
 from crowdbot.core import InputError, SpatialPose
 from crowdbot.recording import StepMessages
 from crowdbot.sensors import Lidar2D, RGBCamera
@@ -159,7 +159,7 @@ class LoadTraffic:
                 for robot, mount, reading in frame.readings
             )
             frame = dataclasses.replace(frame, nanoseconds=nanoseconds, readings=readings)
-            messages = list(self._steps.messages(frame, lambda topic: topic in wanted or _is_part(topic)))
+            messages = list(self._steps.messages(frame, lambda topic: is_among(topic, wanted)))
             self._sent.append((time.monotonic_ns(), nanoseconds))
             inbox.latency.note_step()
             transport.publish(messages)
@@ -190,10 +190,6 @@ def _frames(trial: Trial) -> tuple[Simulation, list[StepRecord]]:
         dataclasses.replace(frame, readings=(*frame.readings, (robot, camera, image)) if frame.readings else ())
         for frame in frames
     ]
-
-
-def _is_part(topic: str) -> bool:
-    return topic.endswith("/") and any(item == topic[:-1] or item.startswith(topic) for item in LOAD_TOPICS)
 
 
 @contextlib.contextmanager

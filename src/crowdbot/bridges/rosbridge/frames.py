@@ -331,7 +331,11 @@ def fragments(text: str, size: int | None, number: str) -> list[str]:
 
 
 def png_frame(text: str) -> str:
-    """Return a frame whose data are a PNG of the bytes of a text, as rosbridge_suite makes it."""
+    """Return a frame whose data are a PNG of the bytes of a text, as rosbridge_suite makes it.
+
+    >>> json.loads(png_frame('{"op":"status"}'))["op"]
+    'png'
+    """
     from PIL import Image
 
     data = text.encode()
@@ -341,15 +345,3 @@ def png_frame(text: str) -> str:
     with io.BytesIO() as buffer:
         image.save(buffer, "PNG")
         return dump_json({"op": "png", "data": base64.b64encode(buffer.getvalue()).decode()})
-
-
-def read_png(data: str) -> str:
-    """Return the text in the data of :func:`png_frame`.
-
-    >>> read_png(json.loads(png_frame('{"op":"status"}'))["data"])
-    '{"op":"status"}'
-    """
-    from PIL import Image
-
-    with io.BytesIO(base64.b64decode(data)) as buffer, Image.open(buffer) as image:
-        return image.convert("RGB").tobytes().decode().rstrip("\n")

@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core import DataError
 from crowdbot.metrics import match_nearest
-from crowdbot.perception import Detections, Detector, OdometryState, ScanOdometry, Tracker, Tracks
+from crowdbot.perception import Detections, Detector, ScanOdometry, ScanOdometryState, Tracker, Tracks
 from crowdbot.sensors import planar_pose
 from crowdbot.typing import Floats
 
@@ -171,7 +171,7 @@ def _follows(time: float, before: float) -> bool:
 
 def place_scans(rows: Iterable[AnnotatedScan], odometry: ScanOdometry) -> Iterator[AnnotatedScan]:
     """Yield the scans with the poses of the odometry, which begins again at the origin after a gap of 1 s."""
-    state: OdometryState | None = None
+    state: ScanOdometryState | None = None
     before = -math.inf
     for row in rows:
         time = float(np.max(row.scan.time))

@@ -260,16 +260,6 @@ class Robot:
         mount = self.mount(name)
         return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
 
-    def planar_mount(self, name: str) -> tuple[float, float, float]:
-        """Return the planar pose of a sensor: x, y [m], heading [rad], as arguments of :meth:`Pose.offset`.
-
-        >>> Robot.load("qolo").planar_mount("lidar_rear")
-        (-0.516, 0.0, 3.141592654)
-        """
-        matrix = self.sensor_frame(name)
-        heading = math.atan2(matrix[1, 0], matrix[0, 0])
-        return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
-
     def sensor_pose(self, name: str, pose: Pose, positions: Mapping[str, float] | None = None) -> SpatialPose:
         """Return the spatial pose of a sensor for a robot on the floor at ``pose`` ``[E]``.
 
