@@ -29,13 +29,18 @@ Refusal = Callable[[str], InputError]
 
 @dataclass
 class Element:
-    """One element with the line of its start tag; ``stray`` is the text between its tags, cut if long."""
+    """One element with the line of its start tag.
+
+    ``stray`` is the text between its tags, cut if long. ``place`` is the name of its file for messages, where the
+    elements of one tree are from several files, otherwise empty.
+    """
 
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
     children: list[Element] = field(default_factory=list)
     line: int = 0
     stray: str = ""
+    place: str = ""
 
     def each(self, tag: str) -> list[Element]:
         """Return the child elements with this tag.

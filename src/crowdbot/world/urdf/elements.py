@@ -57,7 +57,7 @@ class UrdfReader:
     def _where(self, element: Element) -> str:
         name = element.attributes.get("name", "")
         named = f" {name[:60]!r}" if name and element.tag in ("link", "joint") else ""
-        place = getattr(element, "place", "") or self.place  # an element of a xacro file knows its own file
+        place = element.place or self.place  # an element of a xacro file knows its own file
         return f"{place}:{element.line}: <{element.tag[:40]}>{named}"
 
     def finish(self) -> None:

@@ -13,7 +13,6 @@ import numpy as np
 
 from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_number
 from crowdbot.typing import Floats
-from crowdbot.world.xacro import SourceElement
 
 from .transforms import frame, roll_pitch_yaw
 
@@ -26,7 +25,7 @@ MOST_FRAMES = 40
 class SdfConversion(NamedTuple):
     """The elements of URDF, and sentences about what is left out."""
 
-    root: SourceElement
+    root: Element
     ignored: tuple[str, ...]
 
 
@@ -139,11 +138,11 @@ class _Converter:
 
     def element(
         self, source: Element, tag: str, attributes: dict[str, str] | None = None, *children: Element
-    ) -> SourceElement:
+    ) -> Element:
         """Return a new element with the line of its source."""
-        return SourceElement(tag, attributes or {}, list(children), line=source.line, place=self.place)
+        return Element(tag, attributes or {}, list(children), line=source.line, place=self.place)
 
-    def origin(self, source: Element, matrix: Floats) -> SourceElement:
+    def origin(self, source: Element, matrix: Floats) -> Element:
         """Return <origin> of a frame."""
         sine = -float(np.clip(matrix[2, 0], -1.0, 1.0))
         if abs(sine) > 1.0 - 1e-12:  # yaw and roll turn about the same axis
@@ -172,7 +171,7 @@ class _Converter:
             root.children.append(self.element(self.model, "gazebo", {}, *plugins))
         return SdfConversion(root, tuple(self.ignored))
 
-    def link(self, root: SourceElement, name: str, link: Element) -> None:
+    def link(self, root: Element, name: str, link: Element) -> None:
         """Add a link with its friction and sensors."""
         shift = np.linalg.inv(self.link_frame(name)) @ self.pose(name)
         made = self.element(link, "link", {"name": name})
@@ -200,7 +199,7 @@ class _Converter:
                 pose.stray = f"{place['xyz']} {place['rpy']}"
                 copied.children = [pose, *(child for child in copied.children if child.tag != "pose")]
 
-    def inertial(self, source: Element, shift: Floats) -> SourceElement:
+    def inertial(self, source: Element, shift: Floats) -> Element:
         """Return <inertial>."""
         made = self.element(source, "inertial", {}, self.origin(source, shift @ self.local_pose(source)[0]))
         mass = self.number(source, "mass", default=0.0)
@@ -212,7 +211,7 @@ class _Converter:
             made.children.append(self.element(moments, "inertia", row))
         return made
 
-    def geometry(self, part: Element) -> SourceElement | None:
+    def geometry(self, part: Element) -> Element | None:
         """Return <geometry>, or None if the shape is not supported."""
         outer = _one(part, "geometry")
         inner = None if outer is None else next(iter(outer.children), None)
@@ -249,7 +248,7 @@ class _Converter:
         text = color.stray if len(color.stray.split()) == 4 else f"{color.stray} 1"
         return [self.element(color, "material", {}, self.element(color, "color", {"rgba": text}))]
 
-    def joint(self, root: SourceElement, joint: Element) -> None:
+    def joint(self, root: Element, joint: Element) -> None:
         """Add a joint; a joint to the world is left out."""
         kind, name = joint.attributes.get("type", ""), joint.attributes.get("name", "")
         parent, child = self.text(joint, "parent"), self.text(joint, "child")

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_xml, read_bytes
 
 from .evaluation import Budget
-from .files import FileSource, SourceElement, with_place
+from .files import FileSource, with_place
 from .scope import Scope, boolean
 from .texts import Texts
 
@@ -45,7 +45,7 @@ class Expansion(NamedTuple):
         macros: names of all macros.
     """
 
-    root: SourceElement
+    root: Element
     ignored: tuple[str, ...]
     arguments: Mapping[str, str]
     macros: tuple[str, ...] = ()
@@ -120,10 +120,10 @@ class _Expander:
         self.missing = ""
         self.prefix = ""
         self.calls = self.includes = self.files = self.made = 0
-        self.now: SourceElement | None = None
+        self.now: Element | None = None
         self.old = False
 
-    def top(self, root: SourceElement) -> SourceElement:
+    def top(self, root: Element) -> Element:
         """Return the expanded root element; errors name file and line."""
         self.now = root
         try:
@@ -137,7 +137,7 @@ class _Expander:
                 what += f"; the included file {self.missing} is missing{_advice(self.missing)}"
             raise RobotError(f"{at.place}:{at.line}: <{at.tag[:60]}>: {what}") from None
 
-    def copy(self, source: SourceElement, scope: Scope) -> SourceElement:
+    def copy(self, source: Element, scope: Scope) -> Element:
         """Return an element with its texts evaluated and its children expanded."""
         self.made += 1
         if self.made > MOST_ELEMENTS:
@@ -148,20 +148,19 @@ class _Expander:
             if not key.startswith((PREFIX, "xmlns"))
         }
         stray = self.texts.text(source.stray, scope)
-        source_element = SourceElement(source.tag, attributes, [], line=source.line, stray=stray, place=source.place)
+        source_element = Element(source.tag, attributes, [], line=source.line, stray=stray, place=source.place)
         self.fill(source, scope, source_element)
         return source_element
 
-    def fill(self, source: SourceElement, scope: Scope, into: SourceElement) -> None:
+    def fill(self, source: Element, scope: Scope, into: Element) -> None:
         """Expand the children of an element into another one."""
         for child in source.children:
-            assert isinstance(child, SourceElement)
             before, self.now = self.now, child
             self.texts.budget.spend()
             self.expand(child, scope, into)
             self.now = before
 
-    def expand(self, element: SourceElement, scope: Scope, into: SourceElement) -> None:
+    def expand(self, element: Element, scope: Scope, into: Element) -> None:
         """Expand one element into another one."""
         if not element.tag.startswith(PREFIX):
             if not self.is_old(element):
@@ -206,7 +205,7 @@ class _Expander:
         else:
             self.call(element, scope, into)
 
-    def is_old(self, element: SourceElement) -> bool:
+    def is_old(self, element: Element) -> bool:
         """Return whether an element without prefix is one of xacro, or calls a macro with the parameters it needs."""
         if element.tag in OLD_TAGS:
             return OLD_TAGS[element.tag] in element.attributes
@@ -217,12 +216,12 @@ class _Expander:
         needed = {row.name for row in macro.parameters if row.default is None and not row.name.startswith("*")}
         return needed <= element.attributes.keys() <= names
 
-    def required(self, element: SourceElement, key: str) -> str:
+    def required(self, element: Element, key: str) -> str:
         if key not in element.attributes:
             raise InputError(f"needs the attribute {key!r}")
         return element.attributes[key]
 
-    def property(self, element: SourceElement, scope: Scope) -> None:
+    def property(self, element: Element, scope: Scope) -> None:
         """Set or remove a property."""
         row = element.attributes
         name = self.texts.text(self.required(element, "name"), scope)
@@ -248,18 +247,18 @@ class _Expander:
         target = {"": scope, "global": scope.top, "parent": scope.parent or scope}[where]
         target.set(name, value if lazy else self.texts.value(value, scope), lazy=lazy)
 
-    def insert(self, element: SourceElement, scope: Scope, into: SourceElement) -> None:
+    def insert(self, element: Element, scope: Scope, into: Element) -> None:
         """Insert a block of a macro call or a property."""
         name = self.texts.text(self.required(element, "name"), scope)
         many, one = scope.block(f"**{name}"), scope.block(f"*{name}")
-        if isinstance(many, SourceElement):
+        if many is not None:
             self.fill(many, scope, into)
-        elif isinstance(one, SourceElement):
+        elif one is not None:
             self.expand(one, scope, into)
         else:
             raise InputError(f"there is no block {name[:60]!r}")
 
-    def include(self, element: SourceElement, scope: Scope, into: SourceElement) -> None:
+    def include(self, element: Element, scope: Scope, into: Element) -> None:
         """Expand another file in place."""
         name = self.texts.text(self.required(element, "filename"), scope)
         path = self.texts.find(name)
@@ -288,7 +287,7 @@ class _Expander:
         self.fill(root, scope, into)
         self.prefix, self.texts.file, self.includes = before, file, self.includes - 1
 
-    def call(self, element: SourceElement, scope: Scope, into: SourceElement) -> None:
+    def call(self, element: Element, scope: Scope, into: Element) -> None:
         """Expand a macro."""
         name = element.tag[len(PREFIX) :]
         macro = self.macros.get(self.prefix + name) or self.macros.get(name)
@@ -308,7 +307,7 @@ class _Expander:
         self.fill(macro.body, inner, into)
         self.prefix, self.calls = before, self.calls - 1
 
-    def parameters(self, element: SourceElement, macro: Macro, scope: Scope) -> Scope:
+    def parameters(self, element: Element, macro: Macro, scope: Scope) -> Scope:
         """Return the scope of a macro call."""
         inner = Scope(self.texts.value, scope)
         names = [parameter.name for parameter in macro.parameters]
@@ -318,7 +317,7 @@ class _Expander:
             if name not in names:
                 raise InputError(f"the macro has no parameter {name[:60]!r}{did_you_mean(name, names)}")
             inner.set(name, self.texts.value(text, scope), lazy=False)
-        content = SourceElement("", line=element.line, place=element.place)
+        content = Element("", line=element.line, place=element.place)
         self.fill(element, scope, content)
         blocks = [name for name in names if name.startswith("*")]
         if len(blocks) != len(content.children):
@@ -337,9 +336,9 @@ class _Expander:
         return inner
 
 
-def _renamed(element: SourceElement, tag: str, attributes: dict[str, str] | None = None) -> SourceElement:
+def _renamed(element: Element, tag: str, attributes: dict[str, str] | None = None) -> Element:
     row = dict(element.attributes) if attributes is None else attributes
-    return SourceElement(tag, row, element.children, line=element.line, stray=element.stray, place=element.place)
+    return Element(tag, row, element.children, line=element.line, stray=element.stray, place=element.place)
 
 
 def _advice(name: str) -> str:
@@ -360,7 +359,7 @@ class MacroParameter(NamedTuple):
 class Macro(NamedTuple):
     """A macro: its element, parameters, the prefix of its name space and the folder of its file."""
 
-    body: SourceElement
+    body: Element
     parameters: tuple[MacroParameter, ...]
     prefix: str
 

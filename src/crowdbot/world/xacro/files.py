@@ -1,8 +1,8 @@
-"""Contract of the files that a xacro file may read, and elements that know their file."""
+"""Contract of the files that a xacro file may read, and their elements."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
@@ -16,16 +16,7 @@ class FileSource(Protocol):
         """Return the file of ``package://NAME/PATH`` or of a path relative to ``beside``, or None if it is missing."""
 
 
-@dataclass
-class SourceElement(Element):
-    """An element that knows its file: ``place`` is the name of the file for messages."""
-
-    place: str = ""
-
-
-def with_place(element: Element, place: str) -> SourceElement:
-    """Return an element and its children with the name of their file."""
-    children: list[Element] = [with_place(child, place) for child in element.children]
-    return SourceElement(
-        element.tag, dict(element.attributes), children, line=element.line, stray=element.stray, place=place
-    )
+def with_place(element: Element, place: str) -> Element:
+    """Return a copy of an element and its children with the name of their file."""
+    children = [with_place(child, place) for child in element.children]
+    return replace(element, attributes=dict(element.attributes), children=children, place=place)
