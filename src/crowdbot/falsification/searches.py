@@ -118,12 +118,12 @@ class Proposal:
         """Return ``[N]`` the logarithm of this density over the standard normal density at points ``[N, D]``."""
         if self.defensive >= 1.0:
             return np.zeros(len(points))
-        mixture = math.log1p(-self.defensive) + special.logsumexp(self._components(points), axis=1)
+        mixture = math.log1p(-self.defensive) + special.logsumexp(self.log_components(points), axis=1)
         if self.defensive <= 0.0:
             return np.asarray(mixture)
         return np.asarray(np.logaddexp(math.log(self.defensive), mixture))
 
-    def _components(self, points: Floats) -> Floats:
+    def log_components(self, points: Floats) -> Floats:
         """Return ``[N, K]`` the logarithm of each share times its density over the standard normal density."""
         scaled = (points[:, None, :] - self.means) / self.deviations
         log = 0.5 * (points[:, None, :] ** 2 - scaled**2) - np.log(self.deviations)
@@ -183,7 +183,7 @@ def _maximize(points: Floats, share: Floats, count: int, rng: np.random.Generato
     deviation = np.sqrt(share @ (points - center) ** 2)
     proposal = Proposal(np.full(count, 1.0 / count), means, np.maximum(np.tile(deviation, (count, 1)), FLOOR), 0.0)
     for _ in range(STEPS if count > 1 else 1):
-        log = proposal._components(points)
+        log = proposal.log_components(points)
         belongs = np.exp(log - special.logsumexp(log, axis=1, keepdims=True)) * share[:, None]
         total = np.maximum(belongs.sum(axis=0), 1e-12)
         means = (belongs.T @ points) / total[:, None]
