@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from crowdbot.benchmark.speed.live_frames import LIVE_FRAMES, live_frames
+from crowdbot.benchmark.speed.forecast_frames import LIVE_FRAMES, live_frames
 from crowdbot.core import UnknownName
 
 

@@ -21,9 +21,8 @@ import numpy as np
 from crowdbot.core import InputError, MissingExtra, UnknownName
 
 from .bridge_loads import bridge_measurements
-from .calibrated_frames import scheme_frames
+from .forecast_frames import LIVE_FRAMES, live_frames, scheme_frames
 from .learning import learning_measurements
-from .live_frames import LIVE_FRAMES, live_frames
 from .measurement import Gauge, Measurement
 from .workloads import measurements
 

@@ -15,10 +15,8 @@ from crowdbot.core import Scene, Walls, kebab_case, parameters, stream
 from crowdbot.recording import run
 
 from .measurement import Gauge, Measurement
-from .ray_casting import mujoco_rays, people_with_limbs
 from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
-from .skinning import posing_and_skinning, rays_of_skins
-from .tracking import TRACKING_PAIRS, scan_prediction, tracking
+from .sensing import TRACKING_PAIRS, posing_and_skinning, rays_of_limbs, rays_of_skins, scan_prediction, tracking
 
 DENSITY = 0.5
 """People per square metre in timed crowds."""
@@ -72,8 +70,8 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
     found |= {f"physics-{people}-balance": functools.partial(_balance, people) for people in (50, 200)}
     found["camera-50"] = _camera
-    found["lidar2d-1080-limbs"] = _rays_of_limbs
-    found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
+    found["lidar2d-1080-limbs"] = rays_of_limbs
+    found["lidar3d-16x1800-limbs"] = functools.partial(rays_of_limbs, rings=16)
     for level in (0, 2):
         found[f"lidar3d-16x1800-skins-{level}"] = functools.partial(rays_of_skins, level)
     found["posing-and-skinning"] = posing_and_skinning
@@ -232,22 +230,6 @@ def _lidar_batch() -> Measurement:
 def _repeat(work: Callable[[], object], count: int) -> None:
     for _ in range(count):
         work()
-
-
-def _rays_of_limbs(rings: int = 0) -> Measurement:
-    """Compare scans among 50 people with 15 limbs with MuJoCo rays on the same capsules, walls and floor."""
-    from crowdbot.core import Pose
-    from crowdbot.sensors import Lidar2D, Lidar3D
-
-    scene, pose = people_with_limbs(50), Pose.of((5.0, 5.0), 0.3).to_spatial()
-    sensor: Any = Lidar3D(columns=1800) if rings else Lidar2D(rays=1080, field_of_view=1.5 * np.pi, range_max=30.0)
-    theirs = mujoco_rays(scene, sensor, pose)
-    words = "mj_multiRay of MuJoCo with the same 750 capsules, 4 walls and the floor"
-    ours, others = (40, 1) if rings else (300, 10)  # similar durations, so that changes of the load affect both
-    return Measurement(
-        "scans/s", ours, lambda: [sensor.read(scene, pose) for _ in range(ours)], words,
-        other=lambda: [theirs() for _ in range(others)], other_amount=others,
-    )  # fmt: skip
 
 
 def _predictor(name: str) -> Measurement:
