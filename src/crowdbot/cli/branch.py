@@ -7,9 +7,8 @@ import time
 from pathlib import Path
 
 from .output import add_json, print_warnings, progress
-from .replay import add_places
 from .run import print_run
-from .settings import add_settings, parse_settings
+from .settings import add_places, add_settings, parse_settings
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

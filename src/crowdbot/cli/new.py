@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import re
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,13 +23,13 @@ from .templates import (
     trial_test,
 )
 from .templates.maker_file import add_robot_options, convert_robot, is_robot_file
-from .templates.people_files import add_body_options, write_body_file, write_clip_file
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
     from .parser import CommandParser
 
+COPIED = "copied {} to the folder of the trial, since a trial reads only files in its folder"
 KINDS = (*CLASSES, "robot", "stage", "trial", "challenge", "submission", "clip", "body", "schema")
 
 
@@ -79,7 +80,7 @@ def arguments(parser: CommandParser) -> None:
     group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
     group.add_argument("--seed", type=int, help="seed of the trial (default: from the copied trial)")
     add_robot_options(parser)
-    add_body_options(parser)
+    _add_body_options(parser)
     group = parser.add_rare_group("trial from a recording")
     add_file_options(group, agents="all")
     group.add_argument("--reactive", action="store_true", help="simulate people near the robot with a crowd model")
@@ -94,9 +95,9 @@ def main(options: argparse.Namespace) -> int:
     if options.kind == "robot" and is_robot_file(options.file):
         return convert_robot(options)
     if options.kind == "clip":
-        return write_clip_file(options)
+        return _write_clip_file(options)
     if options.kind == "body":
-        return write_body_file(options)
+        return _write_body_file(options)
     if options.json:
         raise InputError("--json is for a robot from a file")
     files = _files(options)
@@ -118,6 +119,7 @@ def main(options: argparse.Namespace) -> int:
         files = {options.file: trial_xml(_trial(options)), **files}
     for file, text in files.items():
         _write(file, text)
+        print(f"wrote {file}")
     if options.kind in FOLLOW_UP:
         test = next(file for file in files if file.name.startswith("test_"))
         cls = f":{_class_name(files[options.file])}" if options.kind in CLASSES else ""
@@ -174,7 +176,8 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
     values |= {name: getattr(options, name) for name in ("format", "topic", "frame", "time_base", "agents")}
     values |= {"columns": " ".join(options.columns), "homography": options.homography and options.homography.name}
     paths = [path for path in (options.recorded, options.homography) if path is not None]
-    copied = [copy for path in paths if (copy := _copy_beside(options, path)) is not None]
+    beside = [(path, options.file.parent / path.resolve().name) for path in paths]
+    copied = [target for path, target in beside if _copy_beside(path, target)]
     try:
         trial = recorded_trial(
             options.file.parent / options.recorded.resolve().name,
@@ -188,28 +191,31 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
             _remove(copy)
         raise
     for copy in copied:
-        note(f"copied {copy.name} to the folder of the trial, since a trial reads only files in its folder")
+        note(COPIED.format(copy.name))
     for sentence in (sentence for item in trial.recorded for sentence in item.remarks()):
         note(sentence)
     return trial
 
 
-def _copy_beside(options: argparse.Namespace, path: Path) -> Path | None:
-    """Copy a file, or the files of a folder, to the folder of the trial and return the copy; None if it is there."""
+def _copy_beside(path: Path, beside: Path) -> bool:
+    """Copy a file, or the files of a folder, to a place in the folder of the trial; False: it is there.
+
+    Raises:
+        InputError: the file does not exist, another one has its place, or the folder cannot be written.
+    """
     from crowdbot.core import InputError, explain_write_errors
     from crowdbot.data import folder_files
 
     if not (path.is_file() or path.is_dir()):
         raise InputError(f"there is no file {path.name!r} in {path.parent}")
-    beside: Path = options.file.parent / path.resolve().name
     if beside.resolve() == path.resolve():
-        return None
+        return False
     pairs = [(path, beside)] if path.is_file() else [(file, beside / file.name) for file in folder_files(path)]
     if beside.exists():
         held = [beside] if beside.is_file() else folder_files(beside)
         if held != [copy for _, copy in pairs] or any(copy.read_bytes() != file.read_bytes() for file, copy in pairs):
             raise InputError(f"{beside} exists with a different content; write the trial to another folder")
-        return None
+        return False
     try:
         with explain_write_errors(beside):
             if path.is_dir():
@@ -219,7 +225,7 @@ def _copy_beside(options: argparse.Namespace, path: Path) -> Path | None:
     except InputError:
         _remove(beside)
         raise
-    return beside
+    return True
 
 
 def _remove(copy: Path) -> None:
@@ -234,16 +240,15 @@ def _import_trials(options: argparse.Namespace) -> None:
     from crowdbot.core import TrialError
     from crowdbot.trials import check_trial, import_trial, trial_xml
 
-    from .templates.people_files import copy_beside
-
     done = import_trial(options.original, options.root, options.layer, options.unit or "")
     problems: list[str] = []
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1
         file = options.file if single else options.file.with_stem(f"{options.file.stem}-{k + 1:02d}-{Path(name).stem}")
-        if trial.stage.building:
-            copy_beside(options.original, file)
+        if trial.stage.building and _copy_beside(options.original, file.parent / options.original.name):
+            print(COPIED.format(options.original.name))
         _write(file, trial_xml(trial))
+        print(f"wrote {file}")
         try:
             check_trial(trial)
         except TrialError as error:
@@ -255,17 +260,78 @@ def _import_trials(options: argparse.Namespace) -> None:
                 print(f"  - {sentence}")
 
 
-def _write(file: Path, text: str) -> None:
+def _write(file: Path, content: str | bytes) -> None:
     """Write a file atomically."""
     from crowdbot.core import InputError
 
     part = file.with_name(file.name + ".part")
     try:
         file.parent.mkdir(exist_ok=True)
-        part.write_text(text, encoding="utf-8")
+        part.write_bytes(content.encode() if isinstance(content, str) else content)
         part.replace(file)
     except OSError as error:
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
         raise InputError(f"cannot write {file}: {error.strerror or error}") from None
-    print(f"wrote {file}")
+
+
+def _add_body_options(parser: CommandParser) -> None:
+    """Declare the options of a body."""
+    group = parser.add_rare_group("body")
+    group.add_argument("--height", type=float, metavar="M", help="stature in metres (default: that in the file)")
+    group.add_argument(
+        "--mass", type=float, metavar="KG", help="mass in kg (default: from the stature, with the mean body mass index)"
+    )
+
+
+def _write_clip_file(options: argparse.Namespace) -> int:
+    """Turn motion capture (BVH) into a clip in the current folder."""
+    from crowdbot.core import InputError
+    from crowdbot.humans import clip_of, read_bvh, write_clip
+
+    source = options.file
+    if source.suffix.lower() != ".bvh":
+        raise InputError(f"{source} must be a file of motion capture, .bvh")
+    out = _target(source, ".clip", options.force)
+    try:
+        text = source.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot read {source}: {error}") from None
+    clip = clip_of(read_bvh(text, source.name), out.name)
+    _write(out, write_clip(clip))
+    kind = "a cycle of a gait, in step with the way" if clip.cyclic else "played in time"
+    print(f"{out}: {len(clip.lift)} frames at {clip.rate:g} Hz, {len(clip.bones)} bones, {kind}")
+    print(f'use it    <agent activity="{out.name}" .../> in a trial beside it')
+    return 0
+
+
+def _write_body_file(options: argparse.Namespace) -> int:
+    """Turn a rigged character (glTF) into a body in the current folder."""
+    from crowdbot.core import InputError
+    from crowdbot.humans import import_body, write_body
+
+    source = options.file
+    if source.suffix.lower() not in (".glb", ".gltf"):
+        raise InputError(f"{source} must be a rigged character in glTF, .glb or .gltf; Blender exports FBX files as it")
+    out = _target(source, ".body", options.force)
+    found = import_body(source, out.name, options.height, options.mass)
+    body = found.body
+    _write(out, write_body(body))
+    levels = ", ".join(str(len(level.faces)) for level in body.levels)
+    print(f"{out}: {body.height:.3f} m, {body.mass:.1f} kg, levels of {levels} triangles")
+    if found.missing:
+        print(f"bones that the skeleton lacks: {', '.join(found.missing)}")
+    for sentence in found.remarks:
+        print(f"left out: {sentence}")
+    print(f'use it    <agent body="{out.name}" .../> in a trial beside it')
+    return 0
+
+
+def _target(source: Path, suffix: str, force: bool) -> Path:
+    """Return the file to write: the stem of the source with allowed letters, in the current folder."""
+    from crowdbot.core import InputError
+
+    out = Path((re.sub(r"[^A-Za-z0-9_-]+", "-", source.stem).strip("-") or "own")[:60] + suffix)
+    if out.exists() and not force:
+        raise InputError(f"{out} already exists; use --force to replace it")
+    return out

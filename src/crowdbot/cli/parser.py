@@ -17,6 +17,11 @@ SETTING = "NAME=VALUE"
 """Metavar of options that take one or several settings, such as ``--set``."""
 
 
+Options = argparse._ActionsContainer
+"""A parser or a group of options, such as :data:`OptionGroup`; argparse has no public names for them."""
+OptionGroup = argparse._ArgumentGroup
+
+
 class CommandHelp(argparse.HelpFormatter):
     """Help text of a command: names are not broken at hyphens, and several values are written ``NAME ...``."""
 
@@ -77,9 +82,9 @@ class CommandParser(argparse.ArgumentParser):
         options.setdefault("allow_abbrev", False)
         options.setdefault("formatter_class", CommandHelp)
         super().__init__(**options)
-        self._rare_groups: list[argparse._ArgumentGroup] = []
+        self._rare_groups: list[OptionGroup] = []
 
-    def add_rare_group(self, title: str, description: str | None = None) -> argparse._ArgumentGroup:
+    def add_rare_group(self, title: str, description: str | None = None) -> OptionGroup:
         """Return a new group of options that the short help lists by name only."""
         if not self._rare_groups:
             self.add_argument("--help-all", action=_HelpAll, help="describe all options and exit")
@@ -139,7 +144,7 @@ class CommandParser(argparse.ArgumentParser):
         """Return the help with the descriptions of all options."""
         return self._help(())
 
-    def _help(self, listed: Sequence[argparse._ArgumentGroup]) -> str:
+    def _help(self, listed: Sequence[OptionGroup]) -> str:
         """Return the help, in which these groups are listed by name."""
         formatter = self._get_formatter()
         formatter.add_text(self.description)

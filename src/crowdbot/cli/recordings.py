@@ -12,7 +12,7 @@ from .output import note
 if TYPE_CHECKING:
     from crowdbot.data import Recording, Trajectories
 
-    from .parser import CommandParser
+    from .parser import CommandParser, Options
 
 
 WINDOW_OPTIONS = ("step", "observe", "predict", "protocol", "near", "late", "learn", "every")
@@ -60,7 +60,7 @@ def add_recordings(parser: CommandParser, predict: int = 12, required: bool = Tr
     add("--every", type=int, default=1, metavar="N", help="use every N-th window of each recording (default: 1)")
 
 
-def _add_stage(parser: argparse._ActionsContainer) -> None:
+def _add_stage(parser: Options) -> None:
     parser.add_argument(
         "--stage",
         metavar="FILE",
@@ -69,7 +69,7 @@ def _add_stage(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def add_file_options(parser: argparse.ArgumentParser | argparse._ArgumentGroup, agents: str = "pedestrians") -> None:
+def add_file_options(parser: Options, agents: str = "pedestrians") -> None:
     """Add the options for the content of a file, see :data:`crowdbot.data.FILE_OPTIONS`.
 
     Frame rate, units and scale may differ between the files of a command, see :func:`value_for`.

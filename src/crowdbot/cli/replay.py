@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from .output import add_json, print_json, print_warnings, progress
+from .settings import add_places
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,21 +21,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_places(parser)
     add_json(parser)
-
-
-def add_places(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the location of trial files."""
-    parser.add_argument(
-        "--folder",
-        type=Path,
-        metavar="DIR",
-        help="folder of the trial files (default: the folder of the episode)",
-    )
-    parser.add_argument(
-        "--trust",
-        action="store_true",
-        help="allow code from the episode, code that differs from the recorded code, and files outside the folder",
-    )
 
 
 def main(options: argparse.Namespace) -> int:

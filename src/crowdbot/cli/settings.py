@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .parser import SETTING
+from .parser import SETTING, Options
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
@@ -18,7 +18,7 @@ WORLDS = ("planar", "physics")
 TRIAL_VALUES = "parameters of a built-in trial (density=0.5) or values by path (spawner[1]/count=20)"
 
 
-def add_settings(parser: argparse._ActionsContainer, values: str = TRIAL_VALUES, option: str = "--set") -> None:
+def add_settings(parser: Options, values: str = TRIAL_VALUES, option: str = "--set") -> None:
     """Add the option ``--set``, see :func:`parse_settings`.
 
     Args:
@@ -51,14 +51,29 @@ def parse_settings(words: Iterable[str], option: str = "--set") -> dict[str, str
     return values
 
 
-def add_seeds(parser: argparse._ActionsContainer, default: str) -> None:
+def add_places(parser: Options) -> None:
+    """Add the options for the location of trial files of a recorded episode."""
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        metavar="DIR",
+        help="folder of the trial files (default: the folder of the episode)",
+    )
+    parser.add_argument(
+        "--trust",
+        action="store_true",
+        help="allow code from the episode, code that differs from the recorded code, and files outside the folder",
+    )
+
+
+def add_seeds(parser: Options, default: str) -> None:
     """Add the option ``--seeds``, see :func:`crowdbot.evaluation.parse_seeds`; ``default`` is for the help."""
     parser.add_argument(
         "--seeds", metavar="SEEDS", help=f"seed 7, seeds 0:100 (0 to 99) or 3,5,10:20 (default: {default})"
     )
 
 
-def add_robots(parser: argparse._ActionsContainer) -> None:
+def add_robots(parser: Options) -> None:
     """Add the option ``--robots``."""
     parser.add_argument(
         "--robots",
@@ -69,7 +84,7 @@ def add_robots(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def add_world(parser: argparse._ActionsContainer) -> None:
+def add_world(parser: Options) -> None:
     """Add the option ``--world``."""
     parser.add_argument(
         "--world",

@@ -11,10 +11,11 @@ from crowdbot.cli.output import note
 
 if TYPE_CHECKING:
     from crowdbot.bridges import CaptureSet, MotionCapture
+    from crowdbot.cli.parser import Options
     from crowdbot.trials import Trial
 
 
-def add_mocap(parser: argparse._ActionsContainer) -> None:
+def add_mocap(parser: Options) -> None:
     """Declare the option ``--mocap``."""
     parser.add_argument(
         "--mocap",

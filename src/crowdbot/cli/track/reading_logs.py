@@ -9,11 +9,12 @@ from crowdbot.cli.output import Progress
 from crowdbot.cli.settings import add_settings, parse_settings
 
 if TYPE_CHECKING:
+    from crowdbot.cli.parser import Options
     from crowdbot.evaluation import ReadingLog
     from crowdbot.perception import Detector
 
 
-def add_runs(parser: argparse.ArgumentParser | argparse._ArgumentGroup) -> None:
+def add_runs(parser: Options) -> None:
     """Add the options for the sensor and the runs."""
     add = parser.add_argument
     add("--sensor", default="", metavar="ROBOT/SENSOR", help="sensor, or topic of a bag (default: the first)")
