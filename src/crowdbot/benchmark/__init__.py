@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .environments.report import EnvironmentRow as EnvironmentRow
     from .environments.report import PeerRate as PeerRate
     from .environments.report import measure_environments as measure_environments
+    from .environments.work_rate import WorkRate as WorkRate
     from .speed.measurement import Gauge as Gauge
     from .speed.measurement import Measurement as Measurement
     from .speed.timing import SpeedRow as SpeedRow

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from .output import add_json, json_text, note, number, print_json, print_table, progress
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import DriveReport, EngineReport, EnvironmentReport
-    from crowdbot.benchmark.environments.work_rate import WorkRate
+    from crowdbot.benchmark import DriveReport, EngineReport, EnvironmentReport, WorkRate
 
 Measured = TypeVar("Measured", "DriveReport", "EngineReport", "EnvironmentReport")
 ENVIRONMENTS = "environments"
