@@ -70,7 +70,7 @@ class BridgeRun:
     command that answers the messages of an instant is applied at this instant. The episode contains the orders; a
     replay gives the same bytes.
 
-    Arguments as in :func:`run_bridge`.
+    Arguments as in :func:`run_bridge`; ``port`` replaces that of the trial and the transports.
     """
 
     def __init__(
@@ -83,12 +83,15 @@ class BridgeRun:
         force: bool = False,
         note: Callable[[str], None] | None = None,
         sources: Sequence[OrderSource] = (),
+        port: BridgePort | None = None,
     ) -> None:
         self.sources = sources
         self.trial, self.seed, self.clock, self.force = steered_trial(trial), seed, clock, force
         self.out = None if out is None else episode_path(out)
-        self.control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
-        self.port = BridgePort(self.trial, transports, self.control, follows_clock=clock.mode == "follow")
+        if port is None:
+            control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
+            port = BridgePort(self.trial, transports, control, follows_clock=clock.mode == "follow")
+        self.port, self.control = port, port.control
         self.note = note or (lambda text: None)
         self.stop = StopRequest()
         self.pace = Pace(trial.step, clock.rate)

@@ -32,7 +32,7 @@ from crowdbot.core import InputError, Twist, did_you_mean, wrap_angle
 from crowdbot.messages import Messages
 from crowdbot.navigation import ExternalNavigator
 from crowdbot.recording import StepMessage
-from crowdbot.simulation import Order, OrderSource, RobotPoseOrder, Simulation, VelocityOrder
+from crowdbot.simulation import Order, OrderSource, RobotPoseOrder, RunSummary, Simulation, VelocityOrder
 from crowdbot.trials import RobotPose, RobotSpec, Trial
 
 from .command_guard import CommandGuard
@@ -317,7 +317,7 @@ class _Watch:
         return result
 
 
-class JoinRun(BridgeRun):
+class JoinRun:
     """Runs a trial in real time with a real robot, see :class:`JoinPort`.
 
     Args:
@@ -332,8 +332,6 @@ class JoinRun(BridgeRun):
     Raises:
         InputError: the robot does not exist.
     """
-
-    port: JoinPort
 
     def __init__(
         self,
@@ -350,11 +348,15 @@ class JoinRun(BridgeRun):
         sources: Sequence[OrderSource] = (),
     ) -> None:
         trial = joined_trial(trial, robot)
-        super().__init__(trial, transports, seed, out, BridgeClock(), force, note)
         spec = next(item for item in trial.robots if item.name == (robot or trial.robots[0].name))
-        self.port = JoinPort(trial, transports, spec, guard, odometry, command, self.note)
-        self.port.control = self.control
-        self.sources = self.port.captures = [_Watch(source, self.port) for source in sources]
+        port = JoinPort(trial, transports, spec, guard, odometry, command, note or (lambda text: None))
+        port.captures = [_Watch(source, port) for source in sources]
+        self.port = port
+        self._bridge = BridgeRun(trial, transports, seed, out, BridgeClock(), force, note, port.captures, port)
+
+    def run(self) -> RunSummary:
+        """Run until the trial ends, or Ctrl-C."""
+        return self._bridge.run()
 
     def remarks(self) -> list[str]:
         """Return lines for people: latencies and stops."""
