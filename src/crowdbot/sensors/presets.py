@@ -36,11 +36,6 @@ class SensorPreset:
     noisy: Sensor
     sources: Mapping[str, str]
 
-    @property
-    def assumed_fields(self) -> tuple[str, ...]:
-        """Fields whose values are assumed."""
-        return tuple(name for name, source in self.sources.items() if source.startswith(ASSUMED))
-
 
 def preset(name: str, *, noisy: bool = False) -> Sensor:
     """Return the sensor of a product.

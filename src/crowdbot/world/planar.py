@@ -829,23 +829,26 @@ class PlanarWorld(World):
         scenes, before = [world.scene for world in worlds], [world._previous for world in worlds]
         if len(worlds) > 1:
             scenes, before = align_scenes(scenes), align_scenes(before)
-        twists = {robot: align_twists([world.twists[robot] for world in worlds]) for robot in worlds[0].twists}
         delays = align_delays([world._delayed for world in worlds], [len(world.slots) for world in worlds])
-        states = []
-        for k, world in enumerate(worlds):
-            contacts = tree.objects([()] * len(world.slots))
-            for contact in world.contacts:
-                contacts[contact.environment] += (contact,)
-            flow = dataclasses.replace(world._traffic, ids=pad_ids(world._traffic.ids, scenes[k].shape[1]))
-            states.append(
-                {
-                    "scene": scenes[k], "_previous": before[k], "_traffic": flow,
-                    "twists": {robot: row[k] for robot, row in twists.items()},
-                    "_delayed": delays[k], "contacts": contacts, "slots": world.slots, "avatars": world.avatars,
-                    "environment_time": world.environment_time, "_rngs": world._rngs,
-                }
-            )  # fmt: skip
-        return states
+        twists = {robot: align_twists([world.twists[robot] for world in worlds]) for robot in worlds[0].twists}
+        return [
+            world._environment_fields(scenes[k], before[k], {robot: row[k] for robot, row in twists.items()}, delays[k])
+            for k, world in enumerate(worlds)
+        ]
+
+    def _environment_fields(
+        self, scene: Scene, previous: Scene, twists: dict[int, Twists], delayed: Delayed
+    ) -> dict[str, Any]:
+        """Return the fields with environments, of which those of the arguments fit to other worlds."""
+        contacts = tree.objects([()] * len(self.slots))
+        for contact in self.contacts:
+            contacts[contact.environment] += (contact,)
+        flow = dataclasses.replace(self._traffic, ids=pad_ids(self._traffic.ids, scene.shape[1]))
+        return {
+            "scene": scene, "_previous": previous, "_traffic": flow, "twists": twists, "_delayed": delayed,
+            "contacts": contacts, "slots": self.slots, "avatars": self.avatars,
+            "environment_time": self.environment_time, "_rngs": self._rngs,
+        }  # fmt: skip
 
     def _set_environments(self, state: dict[str, Any], models: list[Any] | None) -> None:
         """Set the fields with environments, and the model of each environment if it changes."""
