@@ -6,7 +6,7 @@ import math
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.evaluation.decision_metrics import decision_metrics
+from crowdbot.evaluation.run_metrics import decision_metrics
 from crowdbot.metrics import metric_families
 from crowdbot.navigation import ProcessNavigator
 from crowdbot.simulation import simulate, simulate_seeds

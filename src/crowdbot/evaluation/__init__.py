@@ -15,7 +15,6 @@ __getattr__, __dir__, __all__ = lazy_exports(__name__)
 if TYPE_CHECKING:
     from .comparison import PairedComparison as PairedComparison
     from .comparison import paired_comparison as paired_comparison
-    from .decision_metrics import DECISION_METRICS as DECISION_METRICS
     from .factor_sweep import FactorSweep as FactorSweep
     from .factor_sweep import parse_factors as parse_factors
     from .factor_sweep import sweep_trials as sweep_trials
@@ -87,6 +86,7 @@ if TYPE_CHECKING:
     from .result import result_schema as result_schema
     from .robot_recording import RobotRecording as RobotRecording
     from .robot_recording import load_robot_recording as load_robot_recording
+    from .run_metrics import DECISION_METRICS as DECISION_METRICS
     from .run_metrics import PAIRED_FAMILIES as PAIRED_FAMILIES
     from .run_metrics import episode_log as episode_log
     from .run_metrics import episode_metrics as episode_metrics

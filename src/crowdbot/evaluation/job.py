@@ -14,8 +14,7 @@ from crowdbot.core import CrowdbotError, InputError, MissingExtra, explain_write
 from crowdbot.simulation import Episode, RunFailureWarning, simulate_seeds
 from crowdbot.trials import Trial, parse_trial
 
-from .decision_metrics import decision_metrics
-from .run_metrics import episode_metrics, paired_variants
+from .run_metrics import decision_metrics, episode_metrics, paired_variants
 
 
 @dataclass(frozen=True)

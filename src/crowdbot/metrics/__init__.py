@@ -2,8 +2,7 @@
 
 from .agent_states import AgentLog, AgentStates
 from .collisions import collision_mask, collision_share, neighbor_mask, swept_collisions
-from .contact_tracker import ContactTracker
-from .contacts import HOLD, ContactEvent, cause_of, contact_events
+from .contacts import HOLD, ContactEvent, ContactTracker, cause_of, contact_events
 from .coverage import region_coverage, region_levels
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .energy import energy_score

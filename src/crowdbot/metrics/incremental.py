@@ -29,7 +29,7 @@ from crowdbot.core import InputError
 from crowdbot.typing import Bools, Floats
 
 from .agent_states import AgentLog, AgentStates
-from .contact_tracker import ContactTracker
+from .contacts import ContactTracker
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .proximity import personal_space_compliance, proxemic_shares
 from .record_clearance import log_clearance, record_clearance

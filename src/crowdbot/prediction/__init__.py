@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from .kalman import Kalman, KalmanAcceleration
     from .learned_predictor import LearnedPredictor
     from .learners import WEIGHTS_FIELDS, make_learner
-    from .live import Live
-    from .live_report import LiveReport
+    from .live import Live, LiveReport
     from .predictor import Predictor, window_streams
     from .predictor_spec import PredictorSpec
     from .simulated import Simulated
