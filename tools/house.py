@@ -207,8 +207,10 @@ def single_subclass_bases(modules: dict[str, Module]) -> list[str]:
     """Return the classes with one subclass, except abstract classes that a face exports (a public contract)."""
     subclasses: dict[tuple[str, str], list[str]] = defaultdict(list)
     for module in modules.values():
+        libraries = {*_libraries(module)} - {module.name.partition(".")[0]}
         for node in module.classes:
-            for base in map(_last_name, node.bases):
+            own = [base for base in node.bases if ast.unparse(base).partition(".")[0] not in libraries]
+            for base in map(_last_name, own):
                 subclasses[module.name if base.startswith("_") else "", base].append(f"{node.name} in {module.path}")
     exported = set().union(*(module.exports for module in modules.values() if module.is_face))
     breaches = []

@@ -122,6 +122,9 @@ def test_bases_with_one_subclass(house, tmp_path):
     assert breaches(house, tmp_path / "two", a=two) == {}
     one = "class Base: ...\nclass One(Base): ...\n"
     assert breaches(house, tmp_path / "one", a=one) == {rule: ["a.py:1 Base: One in a.py"]}
+    # a class of a library may have the name of an own one
+    library = "import argparse\nclass Action: ...\nclass Own(argparse.Action): ...\n"
+    assert breaches(house, tmp_path / "library", a=library) == {}
     # a private name means the class of its own module
     private = {"a": "class _Base: ...\nclass One(_Base): ...", "b": "class _Base: ...\nclass Two(_Base): ..."}
     assert len(breaches(house, tmp_path / "private", **private)[rule]) == 2
