@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,8 +17,11 @@ MOUNT_HEIGHT = 0.4
 """Default height [m] of a sensor with a planar pose, typical for laser scanners of indoor robots."""
 
 
-def wrap_angle(angle: float) -> float:
-    """Return ``angle`` [rad] in (-pi, pi].
+Angle = TypeVar("Angle", float, Floats)
+
+
+def wrap_angle(angle: Angle) -> Angle:
+    """Return an angle, or an array of angles [rad], in (-pi, pi].
 
     >>> round(wrap_angle(3 * math.pi / 2), 6) == round(-math.pi / 2, 6)
     True

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, SpatialPose, check_number, storable
+from crowdbot.core import Pose, SpatialPose, check_number, storable, wrap_angle
 from crowdbot.typing import Floats
 
 from .imu import elapsed_time
@@ -24,7 +24,7 @@ def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:
     >>> [part.round(3).tolist() for part in arc_between(Pose.of((0.0, 0.0), 0.0), Pose.of((1.0, 1.0), math.pi / 2))]
     [[1.571], [0.0], [1.571]]
     """
-    turn = math.pi - (math.pi - (after.heading - before.heading)) % (2.0 * math.pi)
+    turn = wrap_angle(after.heading - before.heading)
     step = after.position - before.position
     middle = before.heading + 0.5 * turn
     cos, sin = np.cos(middle), np.sin(middle)

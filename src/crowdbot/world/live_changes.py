@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, wrap_angle
 
 from .crowd.journey import JOURNEY, STOP
 from .crowd.routing import WAY, fresh
@@ -73,7 +73,7 @@ def move_agent(world: World, person: int, x: float, y: float, heading: float | N
     slot = slot_of(world, person, environment)
     changes: dict[str, Any] = {"position": (x, y), "velocity": 0.0}
     if heading is not None:
-        changes["heading"] = math.pi - (math.pi - heading) % (2.0 * math.pi)
+        changes["heading"] = wrap_angle(heading)
     _put(world, environment, slot, **changes)
     if slot in world.twists:
         own, row = world.part(environment)

@@ -25,6 +25,7 @@ from crowdbot.core import (
     Twist,
     Walls,
     tree,
+    wrap_angle,
 )
 from crowdbot.core.outlines import Outlines
 from crowdbot.metrics import step_outline_wall_clearance, step_wall_clearance
@@ -492,7 +493,7 @@ class PlanarWorld(World):
             self.assign_ids(agent, rows)
         top = float(getattr(robot.drive, "max_speed", 1.0))
         values = {
-            "position": (x, y), "velocity": 0.0, "heading": math.pi - (math.pi - heading) % (2.0 * math.pi),
+            "position": (x, y), "velocity": 0.0, "heading": wrap_angle(heading),
             "goal": (x, y), "radius": robot.radius, "preferred_speed": top, "max_speed": top, "visible": not ghost,
             "group": -1,
         }  # fmt: skip

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import wrap_angle
 from crowdbot.navigation.goal_motion import SLOWING_TIME, TURN_GAIN
 from crowdbot.navigation.observation import Observation
 from crowdbot.typing import Floats
@@ -117,7 +118,7 @@ def _turn_to(angle: Floats, observation: Observation) -> Floats:
 
 def _bearing(towards: Floats, heading: Floats) -> Floats:
     angle = np.where((towards == 0.0).all(axis=1), 0.0, np.arctan2(towards[:, 1], towards[:, 0]) - heading)
-    return np.asarray(math.pi - (math.pi - angle) % (2.0 * math.pi))
+    return wrap_angle(angle)
 
 
 def _move_ahead(

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.core import Paper, Twist, check_number
+from crowdbot.core import Paper, Twist, check_number, wrap_angle
 from crowdbot.navigation.goal_motion import SLOWING_TIME
 from crowdbot.navigation.navigator import Navigator
 from crowdbot.navigation.observation import DriveLimits, Observation
@@ -158,7 +158,7 @@ def _arcs(observation: Observation, twists: Floats, steps: int) -> tuple[Floats,
     if observation.limits.holonomic:
         course = np.where(np.hypot(vx[:, 0], vy[:, 0]) > 0.0, np.arctan2(vy[:, 0], vx[:, 0]), heading + math.pi)
     angle = np.arctan2(towards[:, 1], towards[:, 0]) - course
-    return points, math.pi - (math.pi - angle) % (2.0 * math.pi)
+    return points, wrap_angle(angle)
 
 
 def _near_walls(observation: Observation, seconds: float) -> Floats:

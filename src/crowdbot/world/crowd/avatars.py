@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crowdbot.core import InputError, Scene, Storage, tree
+from crowdbot.core import InputError, Scene, Storage, tree, wrap_angle
 from crowdbot.humans import BodyPose, PoseMotion, PoseSource, PoseTrack
 from crowdbot.typing import Floats, Ints
 from crowdbot.world.robots.drives.drive import Twists
@@ -122,7 +121,7 @@ class Avatars:
                 self.rows[e, k] = row
                 position[e, agent] = row[:2]
                 velocity[e, agent] = motion.vx, motion.vy
-                heading[e, agent] = math.pi - (math.pi - row[2]) % (2.0 * math.pi)
+                heading[e, agent] = wrap_angle(row[2])
         return scene.replace(position=position, velocity=velocity, heading=heading)
 
     def move(
@@ -170,7 +169,7 @@ class Avatars:
                 array[:, agent] = getattr(led, name)[:, agent]
             present = after.active[:, agent]
             arrays["velocity"][~present, agent] = 0.0
-            turn = np.where(present, _turned(before.heading[:, agent], led.heading[:, agent]) / dt, 0.0)
+            turn = np.where(present, wrap_angle(led.heading[:, agent] - before.heading[:, agent]) / dt, 0.0)
             cos, sin = np.cos(led.heading[:, agent]), np.sin(led.heading[:, agent])
             vx, vy = arrays["velocity"][:, agent].T
             twists[agent] = Twists.of(Twists(cos * vx + sin * vy, turn, cos * vy - sin * vx), len(turn))
@@ -182,7 +181,8 @@ class Avatars:
         spins = np.zeros_like(jumps)
         robots = np.isin(self.agents, self.robots)
         if robots.any():
-            turn = _turned(before.heading[:, self.agents[robots]], after.heading[:, self.agents[robots]])
+            led = self.agents[robots]
+            turn = wrap_angle(after.heading[:, led] - before.heading[:, led])
             spins[:, robots] = jumps[:, robots] | (np.abs(turn) > TURN_JUMP * dt)
         if not (jumps.any() or spins.any()):
             return before
@@ -228,11 +228,6 @@ class Avatars:
             raise InputError(f"avatar {name!r} does not take samples")
         sources[k] = track.with_sample(time, pose, now - self.delay[k] - AHEAD)
         self.sources[environment] = tuple(sources)
-
-
-def _turned(before: Floats, after: Floats) -> Floats:
-    """Return the smaller turn [rad] from one heading to another, from -pi to pi."""
-    return np.asarray(math.pi - (math.pi - (after - before)) % (2.0 * math.pi))
 
 
 def give_pose(world: Any, name: str, time: float, pose: BodyPose, environment: int = 0) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Storage, Walls
+from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Storage, Walls, wrap_angle
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats, Ints
@@ -605,7 +605,7 @@ class PhysicsWorld(PlanarWorld):
     def place_robot(
         self, agent: int, robot: Robot, place: tuple[float, float, float], ghost: bool, environments: Sequence[int]
     ) -> None:
-        place = (float(place[0]), float(place[1]), math.pi - (math.pi - float(place[2])) % (2.0 * math.pi))
+        place = (float(place[0]), float(place[1]), wrap_angle(float(place[2])))
         if environments:
             starts = {**self.rigid.starts, agent: RobotStart(agent, robot, *place)}
             self.rigid.change(starts=starts, ghosts=[*self.rigid.ghosts, *([agent] if ghost else [])])

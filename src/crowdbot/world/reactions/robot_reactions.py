@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene
+from crowdbot.core import InputError, Scene, wrap_angle
 from crowdbot.typing import Floats
 from crowdbot.world.crowd.agent_arrays import BOOL, FLOAT, dense
 from crowdbot.world.crowd.journey import JOURNEY
@@ -292,13 +292,8 @@ def _turn_after(step: Step, toward: Floats, looks: NDArray[np.bool_]) -> Step:
         speed = np.sqrt(after.velocity[..., 0] ** 2 + after.velocity[..., 1] ** 2)
         way = np.arctan2(after.velocity[..., 1], after.velocity[..., 0])
         slow = speed < STILL
-        aim = np.where(slow, robot, way + np.clip(_wrap(robot - way), -ASIDE, ASIDE))
-        heading = scene.heading + np.clip(_wrap(aim - scene.heading), -TURN * dt, TURN * dt)
-        return after.replace(heading=np.where(turns & (slow | looks), _wrap(heading), after.heading))
+        aim = np.where(slow, robot, way + np.clip(wrap_angle(robot - way), -ASIDE, ASIDE))
+        heading = scene.heading + np.clip(wrap_angle(aim - scene.heading), -TURN * dt, TURN * dt)
+        return after.replace(heading=np.where(turns & (slow | looks), wrap_angle(heading), after.heading))
 
     return turn
-
-
-def _wrap(angle: Floats) -> Floats:
-    """Return angles [rad] from -pi, exclusive, to pi."""
-    return math.pi - (math.pi - angle) % (2.0 * math.pi)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Scene, Twist
+from crowdbot.core import Scene, Twist, wrap_angle
 from crowdbot.typing import Floats
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.robots.drives.drive import Twists
@@ -58,7 +58,7 @@ class _MirroredBase:
     def __init__(
         self, body: RobotBody, start: tuple[float, float, float], end: tuple[float, float, float], dt: float
     ) -> None:
-        turn = math.pi - (math.pi - (end[2] - start[2])) % (2.0 * math.pi)
+        turn = wrap_angle(end[2] - start[2])
         self.start, self.turn = start, turn / dt
         self.vx, self.vy = (end[0] - start[0]) / dt, (end[1] - start[1]) / dt
         heading = start[2] + 0.5 * turn
