@@ -200,7 +200,7 @@ def test_a_folder_of_one_file_a_person(tmp_path, capsys):
     with pytest.raises(DataError, match=r"person_3.csv has the columns time, x, y, .*odd.csv has time, x, z"):
         load(folder)
     write(folder / "odd.csv", [(0, 1, 2)], "id,x,y")
-    with pytest.raises(DataError, match="odd.csv has a column of ids, id; give the files instead of the folder"):
+    with pytest.raises(DataError, match="odd.csv has id, x, y; move files of another kind out of the folder"):
         load(folder)
     (tmp_path / "none").mkdir()
     with pytest.raises(DataError, match="none has no files"):

@@ -129,7 +129,7 @@ def test_missing_files_folders_and_rubbish(tmp_path):
     with pytest.raises(DataError, match="is binary and of an unknown format.*; formats are episode, parquet"):
         load(rubbish)
     (tmp_path / "packed.zip").write_bytes(b"PK\x03\x04" + b"\x01" * 500)
-    with pytest.raises(DataError, match="is a zip and of an unknown format"):
+    with pytest.raises(DataError, match="packed.zip is a damaged zip archive; fetch it again"):
         load(tmp_path / "packed.zip")
 
 

@@ -29,6 +29,7 @@ from .readers import (
 from .readers.assemble import check_units
 from .readers.columns import check_quantities
 from .readers.folder import bag_file, read_folder
+from .readers.other_files import describe
 from .readers.plausibility import check_walkers
 from .readers.reader import Reader, ReadOptions
 from .readers.ros import episode
@@ -187,7 +188,10 @@ def _detect(source: Source) -> Reader:
     for reader in _READERS:
         if reader.sniff(source):
             return reader
-    kind = {"binary": "is binary and", "zip": "is a zip and"}.get(source.kind, "is text and")
+    known = describe(source)
+    if known:
+        raise DataError(f"{source.path} {known}")
+    kind = {"binary": "is binary and"}.get(source.kind, "is text and")
     first = f" (it starts with {source.lines[0].strip()[:40]!r})" if source.lines else ""
     hint = "a table without names needs numbers of columns, such as --columns time=1 id=2 x=3 y=4; "
     numbers = tables.has_numbers(source)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from .reader import ReadOptions
 from .video.pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, triples
 
 BAG_INFO, BAG_ENDINGS = "metadata.yaml", (".mcap", ".db3")
+DOCUMENTS = (".md", ".rst", ".license")
+"""Endings of texts that people read."""
 
 
 def bag_file(folder: Path) -> Path | None:
@@ -47,7 +50,35 @@ def read_folder(folder: Path, options: ReadOptions) -> Trajectories:
     other = next((source for source in sources if source.kind != "text"), None)
     if other is not None:
         raise DataError(f"the folder {folder} has {other.path.name}, which is not a text; give the files to read")
-    return tables.read_persons(sources, folder, options)
+    beside = [source for source in sources if _is_beside(source)]
+    people = [source for source in sources if source not in beside]
+    recording = next((source for source in people if not options.columns and _is_plain_recording(source)), None)
+    if recording is not None:
+        raise DataError(
+            f"the folder {folder} has {recording.path.name}, which has rows of several persons and no names of columns;"
+            f" give the files instead of the folder, such as {folder}/*{recording.path.suffix}"
+        )
+    if not people:
+        raise DataError(
+            f"the folder {folder} has no tables, only {', '.join(source.path.name for source in beside[:5])}"
+        )
+    tracks = tables.read_persons(people, folder, options)
+    if not beside:
+        return tracks
+    left_out = f"not read, because it is no table: {', '.join(source.path.name for source in beside[:5])}"
+    return dataclasses.replace(tracks, note="; ".join(filter(None, (tracks.note, left_out))))
+
+
+def _is_beside(source: Source) -> bool:
+    """Return whether a text is a single number, such as the scale of a data set, or a text to read, and no table."""
+    return source.path.suffix.lower() in DOCUMENTS or (len(source.rows) == 1 and len(source.rows[0]) == 1)
+
+
+def _is_plain_recording(source: Source) -> bool:
+    """Return whether a text has rows of frame, id, x, y without names, of several persons."""
+    if not source.numeric(4):
+        return False
+    return len({row[1] for row in source.rows}) > 1
 
 
 def _read_grand_central(sources: list[Source], folder: Path, options: ReadOptions) -> Trajectories:

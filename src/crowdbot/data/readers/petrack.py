@@ -1,7 +1,8 @@
 """PeTrack text: id, frame, x, y, z in metres or centimetres, with or without a "#" header (Boltes & Seyfried 2013).
 
 The header has frame rate and unit. Files without a header, such as those of HERMES, are read with 16 frames/s; large
-coordinates are centimetres. A note reports both assumptions.
+coordinates are centimetres. A note reports both assumptions. Columns after z, such as the ellipses of JPScore and the
+gaze of PeTrack, are not read.
 """
 
 from __future__ import annotations
@@ -28,30 +29,39 @@ ROOM = 50.0
 """Coordinates beyond this [m] without a unit are centimetres; no indoor experiment is larger."""
 
 FPS = re.compile(r"frame\s*rate\s*:?\s*([0-9.]+)", re.IGNORECASE)
-UNIT = re.compile(r"\bx\s*[/\[(]\s*(?:in\s+)?(mm|cm|m)\b", re.IGNORECASE)
-COLUMNS = re.compile(r"^#\s*id\s+frame\b", re.IGNORECASE)
+UNIT = re.compile(
+    r"\bx\s*(?:,\s*y\s*(?:,\s*z\s*)?:[^\n(]*)?[/\[(]\s*(?:in\s+)?"
+    r"(?:(mm|millimet(?:re|er)s?)|(cm|centimet(?:re|er)s?)|(m|met(?:re|er)s?))\b",
+    re.IGNORECASE,
+)
+"""Unit of x in a header: ``x/cm``, ``X (in cm)``, or ``X,Y,Z: the agents coordinates (in metres)`` of JPScore."""
+COLUMNS = re.compile(r"^#\s*id\s+(?:frame|fr)\b", re.IGNORECASE)
+BRACKETS = re.compile(r"\s*[\[(][^\])]*[\])]")
+MOST_COLUMNS = 50
 
 
 def sniff(source: Source) -> bool:
-    """Return whether the header is one of PeTrack, or rows without a header have five numbers."""
+    """Return whether the header is one of PeTrack or JPScore, or rows without a header have five numbers."""
     header = _header(source)
     is_petrack = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
-    return source.numeric(5) or (is_petrack and source.numeric(4))
+    width = len(source.rows[0]) if source.rows else 0
+    return source.numeric(5) or (is_petrack and 4 <= width <= MOST_COLUMNS and source.numeric(width))
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read id, frame, x, y; z is ignored."""
+    """Read id, frame, x, y; z is the height, and columns after it are not read."""
     header = "\n".join(_header(source))
     if not source.rows:
         raise DataError(f"{source.name} has a header but no rows")
     values, line = source.table(len(source.rows[0]))
-    if values.shape[1] not in (4, 5):
+    if not 4 <= values.shape[1] <= MOST_COLUMNS:
         raise DataError(
-            f"{source.name} has {values.shape[1]} columns, PeTrack files have id frame x y and optionally z"
+            f"{source.name} has {values.shape[1]} columns, PeTrack files have id frame x y, and optionally z and others"
         )
+    _check_names(header, source.name)
     odd = exchange_warning(values[:, 0], values[:, 1], values[:, 2:4], ID_FIRST) if not header else ""
     fps, unit = FPS.search(header), UNIT.search(header)
-    units, guess = (unit.group(1).lower(), "") if unit else _guess_units(values)
+    units, guess = (_unit_of(unit), "") if unit else _guess_units(values)
     notes = [] if options.units else [guess]
     if fps is None and options.fps is None and not header:
         notes.append("no frame rate in the file: 16 Hz is assumed, as in HERMES; fps overrides this")
@@ -66,8 +76,23 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         units=units,
         note="; ".join(note for note in (*notes, odd) if note),
         line=line,
-        columns=FileColumns(height="z", heights=values[:, 4]) if values.shape[1] == 5 else None,
+        columns=FileColumns(height="z", heights=values[:, 4]) if values.shape[1] >= 5 else None,
     )
+
+
+def _unit_of(unit: re.Match[str]) -> str:
+    return next(short for short, word in zip(("mm", "cm", "m"), unit.groups(), strict=True) if word)
+
+
+def _check_names(header: str, name: str) -> None:
+    """Raise :class:`DataError` if the header names other columns than id, frame, x, y."""
+    named = next((line for line in header.splitlines() if COLUMNS.match(line)), "")
+    words = re.split(r"[\s,]+", BRACKETS.sub("", named).lstrip("# ").lower())
+    if named and [word.partition("/")[0] for word in words[2:4]] != ["x", "y"]:
+        raise DataError(
+            f"{name}: its header names the columns {' '.join(words[:6])}, PeTrack files have id frame x y; name them:"
+            " --format csv --columns id=1 frame=2 x=NUMBER y=NUMBER"
+        )
 
 
 def _header(source: Source) -> list[str]:
@@ -87,4 +112,4 @@ def _guess_units(values: NDArray[np.float64]) -> tuple[str, str]:
     return units, f"no unit in the file: coordinates up to {size:.0f} are interpreted as {units}; units overrides this"
 
 
-READER = Reader("petrack", "PeTrack and HERMES text: id frame x y z, metres or centimetres", sniff, read)
+READER = Reader("petrack", "PeTrack, JPScore and HERMES text: id frame x y z, metres or centimetres", sniff, read)

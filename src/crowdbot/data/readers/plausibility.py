@@ -280,6 +280,8 @@ def _speed_warning(tracks: Trajectories, options: ReadOptions, speed: float) -> 
     smaller = () if options.units is not None else SMALLER_UNITS
     fits = next((unit for unit, per in smaller if SLOW_WALK < speed / per < FAST_WALK), "")
     hint = f" (with --units {fits} it is {speed / dict(SMALLER_UNITS)[fits]:.2g} m/s)" if fits else ""
+    if speed > FASTEST and options.units is None:
+        hint += ", or give --scale or --homography if the places are pixels"
     return f"the median speed {speed:.2g} m/s is impossible for people: check the frame rate (fps) and the units{hint}"
 
 

@@ -175,33 +175,55 @@ def sniff_atc(source: Source) -> bool:
 
 
 def read_persons(sources: Sequence[Source], folder: Path, options: ReadOptions) -> Trajectories:
-    """Read tables of one person each as one recording; the number in the name of a file is the id, if all have one.
+    """Read tables of one person each as one recording.
+
+    If the tables have a column of ids, it must have one id in each and another in every table. Without one, the number
+    in the name of a file is the id, if all have one.
 
     Raises:
-        DataError: a table cannot be read, has other columns than the first one, or has ids.
+        DataError: a table cannot be read, has other columns than the first one, or is of several persons.
     """
     tables, units = list[Columns](), ""
+    own_ids = dict[str, str]()
     for source in sources:
         columns, units, _ = _csv_columns(source)
-        found, _ = find_columns(list(columns), _by_name(options.columns, list(columns)))
-        if "id" in found:
-            raise DataError(f"{source.name} has a column of ids, {found['id']}; give the files instead of the folder")
         if tables and list(columns) != list(tables[0]):
             raise DataError(
-                f"{source.name} has the columns {', '.join(columns)}, {sources[0].name} has {', '.join(tables[0])}"
+                f"{source.name} has the columns {', '.join(columns)}, {sources[0].name} has {', '.join(tables[0])};"
+                " move files of another kind out of the folder"
             )
+        found, _ = find_columns(list(columns), _by_name(options.columns, list(columns)))
+        if "id" in found:
+            _check_one_id(columns[found["id"]], found["id"], source.name, own_ids)
         tables.append(columns)
     numbers = [LAST_NUMBER.search(source.path.name.partition(".")[0]) for source in sources]
     ids = [int(number[0]) for number in numbers if number is not None]
     if len(set(ids)) < len(sources):
         ids = list(range(1, len(sources) + 1))
     whole = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
-    counts = [len(next(iter(table.values()))) for table in tables]
-    whole[OWN_ID] = np.repeat(np.asarray(ids, dtype=np.int64), counts)
-    options = dataclasses.replace(options, columns={**options.columns, "id": OWN_ID})
+    if not own_ids:
+        counts = [len(next(iter(table.values()))) for table in tables]
+        whole[OWN_ID] = np.repeat(np.asarray(ids, dtype=np.int64), counts)
+        options = dataclasses.replace(options, columns={**options.columns, "id": OWN_ID})
     tracks = _tracks(Source(folder, b"", False), options, whole, {"units": units} if units else {}, None)
     note = f"{len(sources)} files of one person each"
     return dataclasses.replace(tracks, note="; ".join(filter(None, (note, tracks.note))))
+
+
+def _check_one_id(values: NDArray[Any], column: str, name: str, before: dict[str, str]) -> None:
+    """Raise :class:`DataError` unless all values are one new id; ``before`` has the files by id, and gets this one."""
+    held = list(dict.fromkeys(value.strip() for value in values.tolist()))
+    if len(held) > 1:
+        raise DataError(
+            f"{name} has a column of ids, {column}, with {len(held)} persons; it is a recording of its own, so give the"
+            " files instead of the folder"
+        )
+    if held and held[0] in before:
+        raise DataError(
+            f"{name} has the id {held[0][:40]} in {column}, as {before[held[0]]} has; files of one person each need"
+            " ids of their own, give files that are recordings instead of the folder"
+        )
+    before |= dict.fromkeys(held, name)
 
 
 def read_parquet(source: Source, options: ReadOptions) -> Trajectories:

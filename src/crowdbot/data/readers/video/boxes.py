@@ -38,6 +38,7 @@ MOT_CLASSES = (
 MOST_CLASS = 7
 KITTI_COLUMNS = (17, 18)
 """Columns of KITTI labels; results have a score at the end."""
+UNKNOWN = -1.0
 KITTI_TYPES = frozenset(
     ("Car", "Van", "Truck", "Pedestrian", "Person", "Person_sitting", "Cyclist", "Tram", "Misc", "DontCare")
 )
@@ -157,8 +158,12 @@ def sniff_kitti(source: Source) -> bool:
 
 
 def read_kitti(source: Source, options: ReadOptions) -> Trajectories:
-    """Read the feet of boxes if pixels are converted, else places relative to the camera: x forward, y to the left."""
-    rows, kinds, lines = [], dict[int, str](), []
+    """Read the feet of boxes if pixels are converted, else places relative to the camera: x forward, y to the left.
+
+    Files without boxes and sizes, where all of these columns are -1, are tracks of a fixed place in the columns of
+    KITTI, as AgentFormer has ETH/UCY: x and y are the columns 14 and 16, and the frame rate is not that of KITTI.
+    """
+    rows, kinds, lines, has_boxes = [], dict[int, str](), [], False
     for number, text in enumerate(source.text().splitlines(), 1):
         words = text.split()
         if not words or words[2:3] == ["DontCare"]:
@@ -167,24 +172,30 @@ def read_kitti(source: Source, options: ReadOptions) -> Trajectories:
             raise DataError(f"{source.name} line {number} has {len(words)} columns, KITTI labels have 17")
         try:
             row = [float(word) for word in (*words[:2], *words[6:10], words[13], words[15])]
-            kinds.setdefault(int(words[1]), words[2])
+            has_boxes = has_boxes or any(float(word) != UNKNOWN for word in words[6:13])
         except ValueError:
             raise DataError(f"{source.name} line {number}: a column other than the type is not a number") from None
+        if row[1].is_integer():  # the reader of rows names the line of another id
+            kinds.setdefault(int(row[1]), words[2])
         rows.append(row)
         lines.append(number)
     if not rows:
         raise DataError(f"{source.name} has no boxes but those of the type DontCare")
     values = np.asarray(rows, dtype=np.float64)
+    fps: float | None = KITTI_FPS
     note = "feet of boxes in pixels; 10 Hz is assumed, as in KITTI; fps overrides this"
     x, y, units = 0.5 * (values[:, 2] + values[:, 4]), values[:, 5], "px"
-    if options.units is None:
+    if not has_boxes:
+        x, y, fps, units = values[:, 6], values[:, 7], None, "m"
+        note = "places of the columns 14 (x) and 16 (y), there are no boxes"
+    elif options.units is None:
         x, y, units = values[:, 7], -values[:, 6], "m"
         note = (
             "warning: positions are relative to the camera, which moves with the car, x forward and y to the left;"
             " 10 Hz is assumed, as in KITTI, fps overrides this"
         )
     return assemble(
-        source, options, id=values[:, 1], frame=values[:, 0], x=x, y=y, fps=KITTI_FPS, units=units, note=note,
+        source, options, id=values[:, 1], frame=values[:, 0], x=x, y=y, fps=fps, units=units, note=note,
         line=np.asarray(lines), frame_step=1, labels=kinds,
     )  # fmt: skip
 

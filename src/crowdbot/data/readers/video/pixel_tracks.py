@@ -20,12 +20,17 @@ from crowdbot.data.readers.assemble import assemble
 from crowdbot.data.readers.reader import Reader, ReadOptions
 from crowdbot.data.source import MAX_ROWS, Source
 from crowdbot.data.trajectories import Trajectories
+from crowdbot.typing import Floats
 
 EDINBURGH_FPS, EDINBURGH_SCALE = 9.0, 0.0247
 GRAND_CENTRAL_FPS = 25.0
 TRACK = re.compile(r"^\s*TRACK\.R(\d{1,15})\s*=\s*\[(.*)\]\s*;?\s*$")
 POINT = re.compile(r"\[\s*(-?\d{1,9})\s+(-?\d{1,9})\s+(\d{1,12})\s*\]")
 SEPARATORS = re.compile(r"[\s;]*")
+LONG_LINE = 32 * 1024
+"""Length of a line that may be longer than the first bytes of a file."""
+ENOUGH, BESIDE = 50, 0.05
+"""Rows from which on places tell that they are fractions of a picture, and how far they may be outside of it."""
 
 
 def sniff_edinburgh(source: Source) -> bool:
@@ -99,22 +104,37 @@ def read_grand_central(source: Source, options: ReadOptions) -> Trajectories:
 def sniff_four_rows(source: Source) -> bool:
     """Return whether there are four lines of as many numbers: frames in ascending order, persons, and two more.
 
-    Four lines of four numbers could be rows of frame, person, x and y, too, if their first column ascends.
+    Four lines of four numbers could be rows of frame, person, x and y, too, if their first column ascends. A recording
+    has longer lines than the first bytes of a file: the whole text decides then.
     """
-    rows = source.rows
-    if len(rows) != 4 or "," not in source.lines[0] or len({len(row) for row in rows}) != 1:
+    if source.kind != "text" or not source.lines or "," not in source.lines[0]:
         return False
-    if not source.numeric(len(rows[0])):
+    short = len(source.lines[0]) < LONG_LINE
+    if (len(source.lines) if short else 1) > 4 or not _is_numbers(source.lines[0][:LONG_LINE].rpartition(",")[0]):
         return False
-    values = np.asarray(rows, dtype=np.float64)
+    lines = [line for line in source.text().splitlines() if line.strip()]
+    if len(lines) != 4:
+        return False
+    try:
+        values = np.asarray([line.replace(",", " ").split() for line in lines], dtype=np.float64)
+    except ValueError:  # a word that is no number, or lines of different lengths
+        return False
     whole = bool(np.all(values[:2] == np.rint(values[:2])) and np.all(np.diff(values[0]) >= 0.0))
     pairs = len(set(zip(values[0].tolist(), values[1].tolist(), strict=True))) == values.shape[1]
     columns = values.shape[1] == 4 and bool(np.all(np.diff(values[:, 0]) >= 0.0))
     return whole and pairs and values.shape[1] > 1 and not columns
 
 
+def _is_numbers(line: str) -> bool:
+    try:
+        np.asarray(line.split(","), dtype=np.float64)
+    except ValueError:
+        return False
+    return True
+
+
 def read_four_rows(source: Source, options: ReadOptions) -> Trajectories:
-    """Read frames, persons, y and x."""
+    """Read frames, persons, y and x; places from 0 to 1 are fractions of the picture."""
     rows = [line.replace(",", " ").split() for line in source.text().splitlines() if line.strip()]
     if len(rows) != 4 or len({len(row) for row in rows}) != 1:
         counts = ", ".join(str(len(row)) for row in rows[:6])
@@ -125,8 +145,20 @@ def read_four_rows(source: Source, options: ReadOptions) -> Trajectories:
         frame, id, y, x = (np.asarray(row, dtype=np.float64) for row in rows)
     except ValueError as error:
         raise DataError(f"{source.name}: {error}") from None
-    note = "the four rows are frames, persons, y and x, as in files of Social LSTM"
-    return assemble(source, options, id=id, frame=frame, x=x, y=y, note=note)
+    note, units = "the four rows are frames, persons, y and x, as in files of Social LSTM", "m"
+    if len(x) >= ENOUGH and options.units is None and all(_is_fraction(axis) for axis in (x, y)):
+        units = "px"
+        note += (
+            "; warning: all places are from 0 to 1, so they are fractions of the picture and no metres, give"
+            " --homography from them to metres, or --scale with the metres of its side"
+        )
+    return assemble(source, options, id=id, frame=frame, x=x, y=y, units=units, note=note)
+
+
+def _is_fraction(values: Floats) -> bool:
+    """Return whether nearly all values are from 0 to 1."""
+    low, high = np.percentile(values, [1, 99])
+    return bool(low >= -BESIDE and high <= 1.0 + BESIDE)
 
 
 EDINBURGH = Reader(

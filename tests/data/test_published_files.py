@@ -1,0 +1,224 @@
+"""Files as they are published and saved: columns after z, folders with a scale, long rows, files of other kinds."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crowdbot.core import DataError
+from crowdbot.data import load
+
+STEPS = range(12)
+JPSCORE = """#description: jpscore (0.8.4)
+#framerate: 8.00
+#geometry: geometry.xml
+#ID: the agent ID
+#X,Y,Z: the agents coordinates (in metres)
+
+#ID\tFR\tX\tY\tZ\tA\tB\tANGLE\tCOLOR\t
+"""
+PETRACK = "# PeTrack project: a.pet\n# framerate: {}\n# {}\n"
+Rows = Callable[[int, float, float], str]
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "fps", "per_metre"),
+    [
+        (JPSCORE, lambda k, x, y: f"\n  1\t  {k}\t{x}\t{y}\t0.0\t0.2\t0.3\t0.0\t220\t", 8.0, 1.0),
+        (
+            "# description: my experiment\n#framerate: 8\n#X,Y,Z: the coordinates (in centimeters)\n#ID FR X Y Z A\n",
+            lambda k, x, y: f"1 {k} {x} {y} 170 0.2\n", 8.0, 100.0,
+        ),
+        (
+            PETRACK.format("25 fps", "id frame x/m y/m z/m mx/m my/m"),
+            lambda k, x, y: f"1 {k} {x} {y} 1.7 0.1 0.2\n", 25.0, 1.0,
+        ),
+        (
+            PETRACK.format("16.5", "id frame x/cm y/cm z/cm marker"),
+            lambda k, x, y: f"1\t{k}\t{x}\t{y}\t170\t12\n", 16.5, 100.0,
+        ),
+        (
+            PETRACK.format("25 fps", "id frame x [mm] y [mm] z [mm] gaze_x gaze_y gaze_z group"),
+            lambda k, x, y: f"1, {k}, {x}, {y}, 1700, 0, 0, 1, 3\n", 25.0, 1000.0,
+        ),
+        ("#framerate: 10\n#ID FR X Y\n", lambda k, x, y: f"1 {k} {x} {y}\n", 10.0, 1.0),
+    ],
+    ids=["jpscore", "jpscore centimetres", "head direction", "marker", "gaze", "no height"],
+)  # fmt: skip
+def test_petrack_text_with_other_columns(head: str, row: Rows, fps: float, per_metre: float, tmp_path: Path) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text(head + "".join(row(k, (0.1 * k + 1.0) * per_metre, 2.0 * per_metre) for k in STEPS))
+    tracks = load(file)
+    assert tracks.fps == fps
+    np.testing.assert_allclose(tracks.position, [[0.1 * k + 1.0, 2.0] for k in STEPS])
+    assert tracks.warnings == []
+
+
+@pytest.mark.parametrize("names", ["id frame lat lon", "ID FR SPEED X Y", "id frame z x y"])
+def test_petrack_text_whose_header_names_other_columns(names: str, tmp_path: Path) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text(f"# framerate: 8\n# {names}\n" + "".join(f"1 {k} 1 2 3\n" for k in STEPS))
+    with pytest.raises(DataError, match=r"its header names the columns .*--format csv --columns id=1 frame=2 x=NUMBER"):
+        load(file)
+    moved = load(file, format="csv", columns={"id": "1", "frame": "2", "x": "3", "y": "4"}, fps=8.0)
+    assert moved.position[0].tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("count", [5, 400, 9000, 18_000])
+@pytest.mark.parametrize("delimiter", [",", ", "])
+def test_four_rows_of_any_length(count: int, delimiter: str, tmp_path: Path) -> None:
+    """A row of a real file is longer than the first bytes that detect a format."""
+    rows = np.arange(count)
+    frame, id, x, y = 10 * (rows // 4), rows % 4 + 1, 2.0 + rows // 4 * 0.5 + rows % 4, 3.0 + rows % 4
+    file = tmp_path / "pixel_pos.csv"
+    file.write_text("\n".join(delimiter.join(f"{value:.5f}" for value in row) for row in (frame, id, y, x)))
+    tracks = load(file)
+    assert (len(tracks), tracks.units) == (count, "m")
+    assert tracks.position[-1].tolist() == [x[-1], y[-1]]
+
+
+@pytest.mark.parametrize("outside", [0.0, 0.02, -0.02])
+def test_four_rows_of_fractions_of_the_picture_are_no_metres(outside: float, tmp_path: Path) -> None:
+    rows = np.arange(120)
+    x, y = np.linspace(outside, 1.0, 120), np.linspace(1.0 + outside, 0.0, 120)
+    file = tmp_path / "pixel_pos.csv"
+    file.write_text("\n".join(",".join(map(str, row.tolist())) for row in (10 * rows, 1 + 0 * rows, y, x)))
+    tracks = load(file)
+    assert tracks.units == "px"
+    assert "fractions of the picture and no metres, give --homography" in tracks.warnings[0]
+    metres = load(file, transform=20.0)
+    assert (metres.units, metres.warnings) == ("m", [])
+    np.testing.assert_allclose(metres.position[-1], [20.0, 0.0], atol=1e-9)
+
+
+BOX = "-1.0 " * 10
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        f"{{frame}} 1 Pedestrian {BOX}{{x}} -1.0 {{y}} -1.0\n",
+        f"{{frame}}.0 1.0 Pedestrian {BOX}{{x}} -1.0 {{y}} -1.0\n",
+        f"{{frame}} 1 Pedestrian {BOX}{{x}} 0.0 {{y}} 0.0\n",
+        f"{{frame}}.0 1 Car {BOX}{{x}} -1 {{y}} -1\n",
+        f"{{frame}} 1.00 Pedestrian {BOX}{{x}} -1.0 {{y}} -1.0 0.9\n",
+    ],
+)
+def test_places_in_the_columns_of_kitti_without_boxes(row: str, tmp_path: Path) -> None:
+    file = tmp_path / "zara.txt"
+    file.write_text("".join(row.format(frame=k, x=2.0 + 0.5 * k, y=7.0) for k in STEPS))
+    with pytest.raises(DataError, match="has no frame rate"):  # the rate of KITTI is not theirs
+        load(file)
+    tracks = load(file, fps=2.5)
+    assert tracks.position[:2].tolist() == [[2.0, 7.0], [2.5, 7.0]]
+    assert tracks.warnings == []
+
+
+def test_an_id_of_kitti_that_is_no_whole_number(tmp_path: Path) -> None:
+    file = tmp_path / "zara.txt"
+    file.write_text(f"0 1.5 Pedestrian {BOX}1 -1 1 -1\n")
+    with pytest.raises(DataError, match="line 1"):
+        load(file, fps=2.5)
+
+
+def person(path: Path, id: int, names: str = "frame,id,x,y,type") -> None:
+    """Write a table of one person who walks."""
+    rows = "".join(f"{k},{id},{0.05 * k + id},{id},ped\n" for k in STEPS)
+    path.write_text(f"{names}\n{rows}")
+
+
+@pytest.mark.parametrize(
+    ("beside", "content"),
+    [
+        ("ratio_pixel2meter.txt", "0.03872"),
+        ("scale.txt", "# metres per pixel\n0.03872\n"),
+        ("README.md", "frame,id,x,y\nThis folder has two people."),
+        ("LICENSE.license", "Free"),
+        ("", ""),
+    ],
+)
+def test_a_folder_of_one_file_a_person_with_ids(beside: str, content: str, tmp_path: Path) -> None:
+    folder = tmp_path / "run_01"
+    folder.mkdir()
+    for name, id in (("p1.csv", 4), ("p2.csv", 9), ("p10.csv", 5)):
+        person(folder / name, id)
+    if beside:
+        (folder / beside).write_text(content)
+    tracks = load(folder, fps=25.0)
+    assert (tracks.ids.tolist(), len(tracks)) == ([4, 5, 9], 3 * len(STEPS))
+    assert tracks.track(9).x[0] == 9.0
+    assert ("not read, because it is no table: " + beside in tracks.note) == bool(beside)
+
+
+def test_folders_that_are_several_recordings(tmp_path: Path) -> None:
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    person(folder / "a.csv", 1)
+    person(folder / "b.csv", 1)
+    with pytest.raises(DataError, match=r"b.csv has the id 1 in id, as .*a.csv has; .* give files that are recordings"):
+        load(folder, fps=25.0)
+    (folder / "b.csv").write_text("frame,id,x,y,type\n0,2,0,0,ped\n0,3,1,1,ped\n")
+    with pytest.raises(DataError, match=r"b.csv has a column of ids, id, with 2 persons; .* give the files instead"):
+        load(folder, fps=25.0)
+    person(folder / "b.csv", 2, "frame,id,x_c,y_c,type")
+    with pytest.raises(DataError, match="b.csv has the columns .*x_c.* move files of another kind out of the folder"):
+        load(folder, fps=25.0)
+    plain = tmp_path / "train"
+    plain.mkdir()
+    (plain / "zara.txt").write_text("".join(f"{10 * k}\t{id}\t{0.5 * k}\t{id}\n" for k in STEPS for id in (1, 2)))
+    with pytest.raises(DataError, match=r"zara.txt, which has rows of several persons .* such as .*train/\*.txt"):
+        load(plain)
+
+
+def zipped(*names: str) -> bytes:
+    """Return a zip archive of empty files."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for name in names:
+            archive.writestr(name, "")
+    return content.getvalue()
+
+
+def saved(array: np.ndarray) -> bytes:
+    """Return the bytes of an array file."""
+    content = io.BytesIO()
+    np.save(content, array)
+    return content.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (pickle.dumps({"x": [1.0]}, protocol=2), "is a pickle of Python, which is not read, .* run any code"),
+        (pickle.dumps([0.5] * 100, protocol=5), "is a pickle of Python"),
+        (saved(np.zeros((3, 4))), "is an array of NumPy, which does not say what its columns are"),
+        (b"MATLAB 5.0 MAT-file, Platform: GLNXA64" + bytes(100), "is a MATLAB file"),
+        (zipped("[Content_Types].xml", "xl/workbook.xml"), "is an Excel workbook; save its sheet as CSV"),
+        (zipped("content.xml"), "is an OpenDocument file"),
+        (zipped("eth/a.txt", "eth/b.txt"), "is a zip archive of eth/a.txt, eth/b.txt; unpack it"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(50), "is a picture"),
+        (bytes(4) + b"ftypisom" + bytes(50), "is a video; people in it are found by crowdbot track --video"),
+        (b'<?xml version="1.0"?>\n<dataset name="x">\n<frame number="1"/></dataset>', "is XML of <dataset>"),
+        (b'{"info": {}, "annotations": [{"bbox": [1, 2]}]}', "is JSON with info, annotations, bbox, but recordings"),
+        (b"[[1, 2], [3, 4]]", "is JSON, but recordings"),
+    ],
+)
+def test_files_of_other_kinds_say_what_they_are(content: bytes, words: str, tmp_path: Path) -> None:
+    file = tmp_path / "tracks"
+    file.write_bytes(content)
+    with pytest.raises(DataError, match=words):
+        load(file)
+
+
+def test_a_speed_of_pixels_names_the_scale(tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("id,frame,x,y\n" + "".join(f"1,{k},{3 * k},{400 + k}\n" for k in range(60)))
+    tracks = load(file, fps=24.0)
+    assert "or give --scale or --homography if the places are pixels" in tracks.warnings[0]
+    assert load(file, fps=24.0, transform=0.02).warnings == []
