@@ -121,7 +121,7 @@ def test_the_trial_runs(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("hunav_loader:", "loader:", "is not an agent file of HuNavSim: it lacks hunav_loader"),
+        ("hunav_loader:", "loader:", "files of HuNavSim have hunav_loader with ros__parameters"),
         ("      - agent4", "      - agent5", "agent 'agent5' is missing, or not a mapping"),
         ("type: 5 #", "type: 9 #", "agent1: behavior type = 9 must be from 1 to 6"),
         ("x: -4.0", "x: west", "agent1: x must be a number up to 1e6, not 'west'"),

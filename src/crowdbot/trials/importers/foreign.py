@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from .irsim import import_irsim, is_irsim
 from .jupedsim import import_jupedsim
 from .menge import import_menge
 from .original import ImportedTrial, import_original
+from .other_kinds import describe_binary, describe_json, describe_xml, keys_of
 from .pedsim import import_pedsim
 from .umans import import_umans
 from .vadere import import_vadere
@@ -33,6 +35,7 @@ XML_FILES: dict[str, Callable[[Path], ImportedTrial]] = {
     "Experiment": import_menge,
 }
 """Importers of XML files by their root element."""
+XML_ROOT = re.compile(rb"<([A-Za-z_][A-Za-z0-9_]{0,40})[\s/>]")
 
 
 def import_trial(
@@ -62,17 +65,61 @@ def import_trial(
     if layers or unit:
         raise TrialError(f"{path}: layers and units belong to drawings in DXF, and this is none")
     if path.suffix.lower() in (".yaml", ".yml") or b"hunav_loader" in data[:10_000]:
-        return import_irsim(path) if is_irsim(yaml_of(path)) else import_hunavsim(path)
-    if data[:1] == b"{":
-        return import_arena(path) if is_arena(json_of(path)) else import_vadere(path)
+        return _import_yaml(path)
+    if data[:1] in (b"{", b"["):
+        return _import_json(path)
     if data[:1] == b"<":
-        tag = parse_trial_xml(data, str(path)).tag
+        tag = _root_of(path, data)
         if tag in XML_FILES:
             return XML_FILES[tag](path)
         if tag not in ("Trial", "Config"):
+            _refuse(path, describe_xml(tag))
             raise TrialError(
                 f"{path}: the root element <{tag[:40]}> is not known; files of UMANS have Simulation, of pedsim"
                 " scenario, of Gazebo sdf, of JuPedSim JuPedSim or geometry, of Menge Project"
                 " or Experiment, of the CrowdBot simulator Trial or Config"
             )
+    _refuse(path, describe_binary(path, data))
     return import_original(path, root=root)
+
+
+def _import_yaml(path: Path) -> ImportedTrial:
+    content = yaml_of(path)
+    if is_irsim(content):
+        return import_irsim(path)
+    _refuse(path, describe_json(path, content))
+    if isinstance(content, dict) and "hunav_loader" not in content:
+        raise TrialError(
+            f"{path} is not a YAML scene that can be imported, {keys_of(content)}; files of HuNavSim have hunav_loader"
+            " with ros__parameters, worlds of IR-SIM have world and obstacle"
+        )
+    return import_hunavsim(path)
+
+
+def _import_json(path: Path) -> ImportedTrial:
+    content = json_of(path)
+    if is_arena(content):
+        return import_arena(path)
+    _refuse(path, describe_json(path, content))
+    if not isinstance(content, dict) or not {"scenario", "topography"} & set(content):
+        raise TrialError(
+            f"{path} is not a JSON scene that can be imported, {keys_of(content)}; scenarios of Vadere have scenario"
+            " with topography, those of Arena-Rosnav have obstacles and robots"
+        )
+    return import_vadere(path)
+
+
+def _root_of(path: Path, data: bytes) -> str:
+    """Root element of an XML file; drawings with a DOCTYPE are named before it is refused."""
+    try:
+        return parse_trial_xml(data, str(path)).tag
+    except TrialError:
+        first = XML_ROOT.search(data[:5000])
+        _refuse(path, describe_xml(first[1].decode()) if first else "")
+        raise
+
+
+def _refuse(path: Path, why: str) -> None:
+    """Raise :class:`TrialError` if the kind of the file is known."""
+    if why:
+        raise TrialError(f"{path} {why}")

@@ -49,7 +49,7 @@ Scope = dict[str, Element]
 
 
 def import_gazebo(path: str | Path) -> ImportedTrial:
-    """Read a world of Gazebo (root element ``sdf`` or ``gazebo`` with a ``world``).
+    """Read a world of Gazebo (root element ``sdf`` or ``gazebo`` with a ``world``), or a model of a building.
 
     The collisions of models that are between 0.1 and 1.8 m above the ground become solid; meshes become walls where
     they are cut at body height. Included models and meshes are read if they are beside the file, in ``models``, or in
@@ -63,8 +63,11 @@ def import_gazebo(path: str | Path) -> ImportedTrial:
     root = parse_trial_xml(read_trial_bytes(path), str(path))
     scene = ImportedScene(path, "Gazebo")
     worlds = root.each("world")
+    if root.tag in ("sdf", "gazebo") and not worlds and root.each("model"):
+        scene.note("the file has a model and no world: the model stands at its own pose")
+        worlds = [root]
     if root.tag not in ("sdf", "gazebo") or not worlds:
-        raise scene.error("is not a world of Gazebo: it has no <world> in <sdf>")
+        raise scene.error("is not a world of Gazebo: it has neither <world> nor <model> in <sdf>")
     if len(worlds) > 1:
         scene.note(f"the file has {len(worlds)} worlds: the first is imported")
     with scene.named_errors():
@@ -101,7 +104,8 @@ class _Reader:
         for part in world.each("actor"):
             self._actor(part)
         crowd: CrowdModel = SocialForce()
-        self.scene.note("actors do not avoid anybody in Gazebo: here people have the social force model")
+        if world.each("actor"):
+            self.scene.note("actors do not avoid anybody in Gazebo: here people have the social force model")
         return self.scene.trial(crowd=crowd)
 
     def _pose(self, part: Element, scope: Scope | None = None, above: Floats = FIXED) -> Floats:

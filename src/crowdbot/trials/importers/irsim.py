@@ -187,7 +187,8 @@ class _Reader:
         for k in range(number):
             state = _item(row.get("state"), k, float) or list(STATE)
             place = tuple(_at(state, axis, f"{label}: state", 0.0) for axis in range(3))
-            goal = _item(row.get("goal"), k, float) if number > 1 else row.get("goal")
+            goal = row.get("goal")
+            goal = _item(goal, k, float) if number > 1 or _depth(goal) > 2 else goal
             rows = [] if goal is None else goal if _depth(goal) == 2 else [goal]
             placed.append((place, [(_at(spot, 0, f"{label}: goal"), _at(spot, 1, f"{label}: goal")) for spot in rows]))
         return placed
@@ -207,8 +208,9 @@ class _Reader:
         x, y, turn = self._draw(low, high, reach, label)
         rows = row.get("goal")
         if rows is not None:
-            goal = _item(rows, k, float) if _depth(rows) == 2 else rows
-            return (x, y, turn), [(_at(goal, 0, f"{label}: goal"), _at(goal, 1, f"{label}: goal"))]
+            goal = _item(rows, k, float) if _depth(rows) >= 2 else rows
+            spots = goal if _depth(goal) == 2 else [goal]
+            return (x, y, turn), [(_at(spot, 0, f"{label}: goal"), _at(spot, 1, f"{label}: goal")) for spot in spots]
         moves = row.get("kinematics") is not None and not row.get("static")
         return (x, y, turn), [self._draw(low, high, reach, label)[:2]] if moves else []
 
