@@ -148,7 +148,8 @@ def recognize_base(model: RobotModel, plugins: tuple[str, ...] = (), kind: str =
             [wheel for wheel in loose if not wheel.steering],
         )
     castors = [wheel.link for wheel in loose]
-    legs = () if found_wheels or castors else _legs(model, points, ground)
+    legs, feet = ((), ground) if found_wheels or castors else _legs(model, points, poses, ground)
+    ground = min(ground, feet)
     moving = {name for wheel in found_wheels for name in _below(model, wheel.link)}
     for name, rows in points.items():
         below = len(rows) > 0 and rows[:, 2].min() < ground + TOUCHES
@@ -306,15 +307,22 @@ def _is_castor(model: RobotModel, joint: Joint) -> bool:
     return bool(free) and not joint.motor.kind
 
 
-def _legs(model: RobotModel, points: Mapping[str, Floats], ground: float) -> tuple[str, ...]:
-    """Return the joints of legs: chains of at least two rotating joints whose last links are near the ground.
+def _legs(
+    model: RobotModel, points: Mapping[str, Floats], poses: Mapping[str, Floats], ground: float
+) -> tuple[tuple[str, ...], float]:
+    """Return the joints of legs, and the height [m] of the lowest foot.
 
-    Legs begin at different joints of the body. Fingers of a hand that hangs down do not, nor does an arm on a lift.
+    Legs are chains of at least two rotating joints whose last links are near the ground. They begin at different joints
+    of the body. Fingers of a hand that hangs down do not, nor does an arm on a lift. A link with a mass and without a
+    shape counts by its origin, as the feet of a model whose body alone has a shape.
     """
     found: dict[str, None] = {}
     limbs: set[str] = set()
+    feet = math.inf
     for name, rows in points.items():
-        if not len(rows) or rows[:, 2].min() > ground + 2.0 * NEAR_GROUND:
+        bare = not len(rows) and model.links[name].inertial is not None
+        lowest = float(poses[name][2, 3]) if bare else float(rows[:, 2].min()) if len(rows) else math.inf
+        if lowest > ground + 2.0 * NEAR_GROUND:
             continue
         last = next((joint for joint in model.joints.values() if joint.child == name), None)
         chain = [] if last is None else [last, *joints_above(model, last)]
@@ -322,8 +330,9 @@ def _legs(model: RobotModel, points: Mapping[str, Floats], ground: float) -> tup
         lifted = any(joint.kind == "prismatic" and joint.upper - joint.lower > LIFT for joint in chain)
         if len(turning) >= 2 and not lifted:
             limbs.add(turning[-1].name)
+            feet = min(feet, lowest)
             found |= dict.fromkeys(joint.name for joint in reversed(turning))
-    return tuple(found) if len(limbs) >= 2 else ()
+    return (tuple(found), feet) if len(limbs) >= 2 else ((), ground)
 
 
 def _kind(
@@ -338,7 +347,15 @@ def _kind(
                 several = kind == "differential" and len(wheels) >= 4
                 return ("skid-steer" if several else kind), f"the plugin {plugin[:60]}"
     if not wheels:
-        return ("legged", f"{len(legs)} joints of legs") if legs else ("planar", "no wheels or legs are recognized")
+        upright = [joint for joint in model.movable if _is_upright(model, joint)]
+        others = (
+            f": the axes of {', '.join(joint.name for joint in upright[:4])} are vertical" if len(upright) > 2 else ""
+        )
+        return (
+            ("legged", f"{len(legs)} joints of legs")
+            if legs
+            else ("planar", f"no wheels or legs are recognized{others}")
+        )
     if any("mecanum" in name.lower() for name in (*model.links, *model.joints)):
         return "mecanum", "wheels with 'mecanum' in their name"
     if len(fixed) >= 4 and any(len(_below(model, wheel.link)) > 4 for wheel in fixed):
@@ -356,6 +373,13 @@ def _kind(
     if len(fixed) >= 4 and len(rows) > 1:
         return "skid-steer", f"{len(fixed)} wheels on {len(rows)} axles"
     return ("differential", f"{len(fixed)} wheels on one axle") if len(fixed) > 1 else ("planar", "only one wheel")
+
+
+def _is_upright(model: RobotModel, joint: Joint) -> bool:
+    """Return whether a joint turns without end about a vertical axis, and nothing turns below it, as a wheel may."""
+    vertical = abs(float((model.poses()[joint.child][:3, :3] @ joint.axis)[2])) > 0.8
+    below = _below(model, joint.child)
+    return joint.kind == "continuous" and vertical and not any(item.parent in below for item in model.movable)
 
 
 def _driven(wheels: list[FoundWheel], kind: str, model: RobotModel) -> list[FoundWheel]:

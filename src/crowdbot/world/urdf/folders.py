@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from urllib.parse import unquote
 
-from crowdbot.core import InputError, parse_xml
+from crowdbot.core import InputError, nearest_name, parse_xml
 
 INNER = ("urdf", "robots")
 """Subfolders of a robot folder that contain the URDF, as in ROS packages."""
@@ -107,6 +107,27 @@ class Folders:
         name = rest.partition("/")[0] if scheme == "package" else ""
         return "" if name in (self.name, *self.packages) else name
 
+    def lack(self, reference: str) -> str:
+        """Return why a ``package://`` URI has no file: its package is not known, or its folder lacks the file.
+
+        >>> Folders(Path("."), {"arm": Path("/opt/arm")}).lack("package://hand/meshes/a.stl")
+        'give --package hand=FOLDER if you have it'
+        """
+        scheme, _, rest = reference.partition("://")
+        if scheme != "package":
+            return ""
+        name, _, path = rest.partition("/")
+        if name not in self.packages:
+            return f"give --package {name[:60]}=FOLDER if you have it"
+        folder = (self.packages[name] / path).parent
+        held = [entry.name for entry in _entries(folder) if entry.is_file()]
+        near = nearest_name(Path(path).name, held)
+        what = f"it has {near}" if near else f"its folder {Path(path).parent} has {', '.join(held[:5]) or 'no files'}"
+        return (
+            f"the folder {self.packages[name]} of the package {name[:60]} lacks it, {what}; if that is another version,"
+            f" give the right one with --package {name[:60]}=FOLDER"
+        )
+
     def _in_packages(self, rest: str) -> list[Path]:
         """Return the candidate paths of a file in a package, the most likely first.
 
@@ -146,9 +167,14 @@ def _is_package(folder: Path, name: str) -> bool:
 
 
 def _folders(parent: Path) -> list[Path]:
+    return [inner for inner in _entries(parent) if inner.is_dir()]
+
+
+def _entries(parent: Path) -> list[Path]:
+    """Return the entries of a folder in order; none if it cannot be read."""
     try:
-        return sorted(inner for inner in itertools.islice(parent.iterdir(), MOST_ENTRIES) if inner.is_dir())
-    except OSError:
+        return sorted(itertools.islice(parent.iterdir(), MOST_ENTRIES))
+    except (OSError, ValueError):
         return []
 
 

@@ -134,7 +134,7 @@ class _Expander:
             at = self.now or root
             what = "the elements are nested too deep" if isinstance(error, RecursionError) else str(error)
             if self.missing and "is not defined" in what:
-                what += f"; the included file {self.missing} is missing{_advice(self.missing)}"
+                what += f"; the included file {self.missing} is missing{self.advice(self.missing)}"
             raise RobotError(f"{at.place}:{at.line}: <{at.tag[:60]}>: {what}") from None
 
     def copy(self, source: Element, scope: Scope) -> Element:
@@ -267,7 +267,7 @@ class _Expander:
                 self.missing = self.missing or name[:200]
                 self.ignored.append(
                     f"{element.place}:{element.line}: the included file {name[:200]} is missing; it is left out"
-                    f"{_advice(name)}"
+                    f"{self.advice(name)}"
                 )
             return
         self.includes, self.files = self.includes + 1, self.files + 1
@@ -286,6 +286,11 @@ class _Expander:
             self.prefix, scope = f"{before}{space}.", inner
         self.fill(root, scope, into)
         self.prefix, self.texts.file, self.includes = before, file, self.includes - 1
+
+    def advice(self, name: str) -> str:
+        """Return why an included file is missing and what to do, in brackets."""
+        why = self.texts.files.lack(name)
+        return f" ({why})" if why else ""
 
     def call(self, element: Element, scope: Scope, into: Element) -> None:
         """Expand a macro."""
@@ -339,13 +344,6 @@ class _Expander:
 def _renamed(element: Element, tag: str, attributes: dict[str, str] | None = None) -> Element:
     row = dict(element.attributes) if attributes is None else attributes
     return Element(tag, row, element.children, line=element.line, stray=element.stray, place=element.place)
-
-
-def _advice(name: str) -> str:
-    if name.startswith("package://"):
-        package = name.removeprefix("package://").partition("/")[0]
-        return f" (give --package {package[:60]}=FOLDER if you have it)"
-    return ""
 
 
 class MacroParameter(NamedTuple):

@@ -15,6 +15,9 @@ class FileSource(Protocol):
     def find(self, reference: str, beside: Path | None = None) -> Path | None:
         """Return the file of ``package://NAME/PATH`` or of a path relative to ``beside``, or None if it is missing."""
 
+    def lack(self, reference: str) -> str:
+        """Return why a file that was not found is missing and what to do; empty if nothing more is known."""
+
 
 def with_place(element: Element, place: str) -> Element:
     """Return a copy of an element and its children with the name of their file."""
