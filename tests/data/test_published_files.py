@@ -222,3 +222,12 @@ def test_a_speed_of_pixels_names_the_scale(tmp_path: Path) -> None:
     tracks = load(file, fps=24.0)
     assert "or give --scale or --homography if the places are pixels" in tracks.warnings[0]
     assert load(file, fps=24.0, transform=0.02).warnings == []
+
+
+def test_grand_central_says_which_number_is_x(tmp_path: Path) -> None:
+    """Its first numbers reach 1919, its second ones 1079; published homographies take the second for x."""
+    for name in ("000001.txt", "000002.txt"):
+        (tmp_path / name).write_text("".join(f"{1900 - k}\n{1000 + k}\n{20 * k}\n" for k in STEPS))
+    for tracks in (load(tmp_path), load(tmp_path / "000001.txt")):
+        assert tracks.position[0].tolist() == [1000.0, 1900.0]
+        assert "x is the second number of a row" in tracks.note

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from crowdbot.core import TrialError
+from crowdbot.core import TrialError, strict_xml
 from crowdbot.trials.importers.foreign import import_trial
 
 IFC = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('ViewDefinition'),'2;1');\nFILE_SCHEMA(('IFC4'));\nENDSEC;\n"
@@ -112,3 +112,68 @@ def test_several_goals_of_irsim(tmp_path, goals, last):
     (tmp_path / "world.yaml").write_text(ROBOT.format(goals))
     done = import_trial(tmp_path / "world.yaml")
     assert [(robot.goal.x, robot.goal.y) for robot in done.trials[0][1].robots] == last
+
+
+WORLD = f"<sdf version='1.6'><world name='w'><model name='house'><static>1</static>{WALL}</model></world></sdf>"
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "<?xml version='1.0'?>\n<!-- gz topic -t /a -m gz.msgs.Twist -p 'x' --once -->\n",
+        "\n\n<?xml version='1.0' encoding='UTF-8'?>\n",
+        "\ufeff\n<?xml version='1.0'?>\n<!-- a <!-- b -->\n",
+        "<!--- three --->\n",
+        "<!-- <model name='no'><link/></model> -- \n -->\n",
+        "<?xml version='1.0' encoding='ISO-8859-1'?>\n<!-- -- -->",
+    ],
+)
+def test_comments_and_declarations_that_gazebo_reads(tmp_path, before):
+    file = tmp_path / "hall.sdf"
+    file.write_bytes((before + WORLD).encode())
+    assert len(import_trial(file).trials[0][1].stage.obstacles) == 1
+    file.write_bytes((before + WORLD.replace("</world>", "</welt>")).encode())
+    with pytest.raises(TrialError, match=f"hall.sdf:{before.count(chr(10)) + 1}: this is not well-formed XML"):
+        import_trial(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "hall.xml",
+            "<geometry version='0.8' unit='m'><!-- in -- out --><rooms><room id='0'><subroom id='0' class='subroom'>"
+            "<polygon caption='wall'><vertex px='0' py='0'/><vertex px='9' py='0'/></polygon>"
+            "<polygon caption='wall'><vertex px='9' py='5'/><vertex px='0' py='5'/></polygon>"
+            "</subroom></room></rooms></geometry>",
+        ),
+        (
+            "scene.xml",
+            "<Experiment version='2.0'><!-- --a --><ObstacleSet type='explicit' class='1'><Obstacle closed='1'>"
+            "<Vertex p_x='0' p_y='0'/><Vertex p_x='2' p_y='0'/><Vertex p_x='2' p_y='2'/></Obstacle></ObstacleSet>"
+            "</Experiment>",
+        ),
+        (
+            "pedsim.xml",
+            "<scenario><!-- -- --><obstacle x1='0' y1='0' x2='5' y2='0'/><waypoint id='a' x='3' y='3' r='1'/>"
+            "<agent x='1' y='1' n='2' dx='1' dy='1'><addwaypoint id='a'/></agent></scenario>",
+        ),
+    ],
+)
+def test_comments_of_other_simulators(tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    stage = import_trial(tmp_path / name).trials[0][1].stage
+    assert stage.walls or stage.obstacles
+
+
+@pytest.mark.parametrize("comment", ["<!-- -- -->", "<!-- roslaunch a b --x -->", "<!---- a ---->", "<!-- <b/> -- -->"])
+def test_comments_of_a_robot(comment):
+    from crowdbot.world.urdf import read_urdf
+
+    model = read_urdf(f"<robot name='r'>{comment}<link name='a'/></robot>")
+    assert list(model.links) == ["a"]
+
+
+def test_cdata_keeps_its_text():
+    kept = b"<a><![CDATA[<!-- x -- -->]]>"
+    assert strict_xml(kept + b"<!-- -- --></a>") == kept + 11 * b" " + b"</a>"

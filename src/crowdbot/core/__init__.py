@@ -25,6 +25,7 @@ from .errors import (
     import_optional,
     nearest_name,
 )
+from .markup.loose_xml import strict_xml
 from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
 from .model_parameter import (
     Bounds,
@@ -194,6 +195,7 @@ __all__ = [
     "storable",
     "stream",
     "stream_states",
+    "strict_xml",
     "system_name",
     "table_rows",
     "tree",

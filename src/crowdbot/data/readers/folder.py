@@ -14,7 +14,7 @@ from crowdbot.data.trajectories import Trajectories
 from . import tables, wildtrack
 from .assemble import assemble
 from .reader import ReadOptions
-from .video.pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, triples
+from .video.pixel_tracks import GRAND_CENTRAL, GRAND_CENTRAL_FPS, GRAND_CENTRAL_ORDER, triples
 
 BAG_INFO, BAG_ENDINGS = "metadata.yaml", (".mcap", ".db3")
 DOCUMENTS = (".md", ".rst", ".license")
@@ -91,5 +91,6 @@ def _read_grand_central(sources: list[Source], folder: Path, options: ReadOption
     values = np.concatenate(rows)
     return assemble(
         Source(folder, b""), options, id=np.repeat(ids, list(map(len, rows))), frame=values[:, 2], x=values[:, 0],
-        y=values[:, 1], fps=GRAND_CENTRAL_FPS, units="px", note=f"{len(sources)} files of one person each",
+        y=values[:, 1], fps=GRAND_CENTRAL_FPS, units="px",
+        note=f"{len(sources)} files of one person each; {GRAND_CENTRAL_ORDER}",
     )  # fmt: skip

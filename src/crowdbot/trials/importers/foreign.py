@@ -7,12 +7,12 @@ from collections.abc import Callable, Collection
 from pathlib import Path
 
 from crowdbot.core import TrialError
-from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
+from crowdbot.trials.xml.trial_text import read_trial_bytes
 
 from .arena import import_arena, is_arena
 from .building import import_building, is_building
 from .dxf import import_dxf, is_dxf
-from .foreign_text import json_of, yaml_of
+from .foreign_text import json_of, xml_of, yaml_of
 from .gazebo import import_gazebo
 from .hunavsim import import_hunavsim
 from .irsim import import_irsim, is_irsim
@@ -112,7 +112,7 @@ def _import_json(path: Path) -> ImportedTrial:
 def _root_of(path: Path, data: bytes) -> str:
     """Root element of an XML file; drawings with a DOCTYPE are named before it is refused."""
     try:
-        return parse_trial_xml(data, str(path)).tag
+        return xml_of(path).tag
     except TrialError:
         first = XML_ROOT.search(data[:5000])
         _refuse(path, describe_xml(first[1].decode()) if first else "")

@@ -1,4 +1,4 @@
-"""Content of YAML and JSON files of other simulators, with limits."""
+"""Content of XML, YAML and JSON files of other simulators, with limits."""
 
 from __future__ import annotations
 
@@ -7,11 +7,24 @@ import re
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import InputError, TrialError, parse_yaml
-from crowdbot.trials.xml.trial_text import read_trial_bytes
+from crowdbot.core import Element, InputError, TrialError, parse_yaml, strict_xml
+from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
 MOST_BYTES = 4_000_000
 COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*')
+
+
+def xml_of(path: Path, place: str = "") -> Element:
+    """The root element of an XML file that its own simulator reads, see :func:`crowdbot.core.strict_xml`.
+
+    Args:
+        path: the file.
+        place: name for messages (default: the path).
+
+    Raises:
+        TrialError: the file is missing, too large or not XML.
+    """
+    return parse_trial_xml(strict_xml(read_trial_bytes(path)), place or str(path))
 
 
 def yaml_of(path: Path) -> Any:

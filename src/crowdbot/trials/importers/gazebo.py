@@ -15,11 +15,11 @@ import numpy as np
 from crowdbot.core import Element, InputError
 from crowdbot.models import CrowdModel, SocialForce
 from crowdbot.trials.files.trial_files import resolve_file
-from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from crowdbot.typing import Floats
 from crowdbot.world import Submesh, frame, read_mesh, roll_pitch_yaw
 
 from .building import HEIGHTS, outlines
+from .foreign_text import xml_of
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, circle
 
@@ -60,7 +60,7 @@ def import_gazebo(path: str | Path) -> ImportedTrial:
         TrialError: the file is missing or malformed, or nothing in it can be imported.
     """
     path = Path(path)
-    root = parse_trial_xml(read_trial_bytes(path), str(path))
+    root = xml_of(path)
     scene = ImportedScene(path, "Gazebo")
     worlds = root.each("world")
     if root.tag in ("sdf", "gazebo") and not worlds and root.each("model"):
@@ -210,7 +210,7 @@ class _Reader:
             )
             return
         try:
-            root = parse_trial_xml(read_trial_bytes(found), f"{found.parent.name}/{found.name}")
+            root = xml_of(found, f"{found.parent.name}/{found.name}")
         except InputError as error:
             self.scene.note(
                 f"<include> of {name[:60]!r} in {self._where(part)} is left out: {error}; mend the file, or add its"

@@ -17,9 +17,9 @@ from crowdbot.models import CollisionFreeSpeed
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.files.trial_files import resolve_file
 from crowdbot.trials.people import SourceSpec, Spawner
-from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from crowdbot.world import Exit, Zone
 
+from .foreign_text import xml_of
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box
 
@@ -57,7 +57,7 @@ def import_jupedsim(path: str | Path) -> ImportedTrial:
         TrialError: a file is missing or malformed, or nothing in it can be imported.
     """
     path = Path(path)
-    root = parse_trial_xml(read_trial_bytes(path), str(path))
+    root = xml_of(path)
     scene = ImportedScene(path, "JuPedSim")
     with scene.named_errors():
         if root.tag == "geometry":
@@ -70,7 +70,7 @@ def import_jupedsim(path: str | Path) -> ImportedTrial:
             found = resolve_file(file, path.resolve().parent, trust=False)
         except InputError as error:
             raise scene.error(f"the geometry {error}") from None
-        geometry = parse_trial_xml(read_trial_bytes(found), str(found))
+        geometry = xml_of(found)
         return _Reader(scene, geometry).trial(root)
 
 
@@ -216,7 +216,7 @@ class _Reader:
                         f"<file> of <{part.tag}> in line {item.line} is left out: {error}; put it beside the project"
                     )
                     continue
-                self.files.append(parse_trial_xml(read_trial_bytes(found), str(found)))
+                self.files.append(xml_of(found))
 
     def _everywhere(self, tag: str) -> list[Element]:
         """Elements of the project and its files with a tag."""

@@ -15,9 +15,9 @@ from crowdbot.core import Element, InputError
 from crowdbot.core.fields import Points
 from crowdbot.models import ORCA, CrowdModel, SocialForce
 from crowdbot.trials.files.trial_files import resolve_file
-from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from crowdbot.world import Point, Zone
 
+from .foreign_text import xml_of
 from .original import ImportedTrial
 from .scene_parts import ImportedScene, as_number, box, move
 
@@ -50,7 +50,7 @@ def import_menge(path: str | Path) -> ImportedTrial:
         TrialError: a file is missing or malformed, or nothing in it can be imported.
     """
     path = Path(path)
-    root = parse_trial_xml(read_trial_bytes(path), str(path))
+    root = xml_of(path)
     scene = ImportedScene(path, "Menge")
     with scene.named_errors():
         if root.tag == "Experiment":
@@ -71,7 +71,7 @@ def _beside(scene: ImportedScene, name: str) -> Element:
         file = resolve_file(name[:200], scene.path.resolve().parent, trust=False)
     except InputError as error:
         raise scene.error(str(error)) from None
-    return parse_trial_xml(read_trial_bytes(file), str(file))
+    return xml_of(file)
 
 
 class _Reader:

@@ -19,9 +19,9 @@ from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import End, Trial
-from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 from crowdbot.world import Point
 
+from .foreign_text import xml_of
 from .original import ImportedTrial
 from .umans import number_of
 
@@ -46,7 +46,7 @@ def import_pedsim(path: str | Path) -> ImportedTrial:
         TrialError: the file is missing or malformed, or nobody is left.
     """
     path = Path(path)
-    root = parse_trial_xml(read_trial_bytes(path), str(path))
+    root = xml_of(path)
     if root.tag != "scenario":
         raise TrialError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, pedsim has scenario")
     reader = _Reader(path, {child.attributes.get("id", ""): child for child in root.children if child.tag in STOPS})

@@ -17,8 +17,8 @@ from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowds
 from crowdbot.trials.stage import Obstacle, Stage
 from crowdbot.trials.trial import End, Trial
-from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
+from .foreign_text import xml_of
 from .original import ImportedTrial
 
 RADIUS, SPEED = 0.24, 1.3
@@ -68,7 +68,7 @@ def number_of(element: Element, key: str, otherwise: float | None = None) -> flo
 
 
 def _read(path: Path, tag: str) -> Element:
-    root = parse_trial_xml(read_trial_bytes(path), str(path))
+    root = xml_of(path)
     if root.tag != tag:
         raise TrialError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, this file of UMANS has {tag}")
     return root

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from crowdbot.core import Element, InputError, RobotError, parse_xml, read_bytes
+from crowdbot.core import Element, InputError, RobotError, parse_xml, read_bytes, strict_xml
 from crowdbot.world.xacro import expand_xacro, is_xacro
 
 from .folders import Folders, robot_folder
@@ -66,7 +66,7 @@ def parse_robot_file(
         path = Path(source)
         data, place = read_bytes(path, "URDF", RobotError), str(path)
         home = folder or robot_folder(path)
-    root = parse_xml(data, place, what="URDF", root="robot", refusal=RobotError)
+    root = parse_xml(strict_xml(data), place, what="URDF", root="robot", refusal=RobotError)
     beside = None if path is None else path.resolve().parent
     folders = Folders(home, packages, beside, search=folder is None and path is not None)
     if root.tag in ("sdf", "model", "gazebo"):

@@ -24,6 +24,11 @@ from crowdbot.typing import Floats
 
 EDINBURGH_FPS, EDINBURGH_SCALE = 9.0, 0.0247
 GRAND_CENTRAL_FPS = 25.0
+GRAND_CENTRAL_ORDER = (
+    "x is the second number of a row, as in the homographies of its publications, although the first one is horizontal"
+    " in the picture of 1920 x 1080 pixels"
+)
+"""Note on the order of coordinates: the first numbers reach 1919, the second ones 1079."""
 TRACK = re.compile(r"^\s*TRACK\.R(\d{1,15})\s*=\s*\[(.*)\]\s*;?\s*$")
 POINT = re.compile(r"\[\s*(-?\d{1,9})\s+(-?\d{1,9})\s+(\d{1,12})\s*\]")
 SEPARATORS = re.compile(r"[\s;]*")
@@ -97,7 +102,8 @@ def read_grand_central(source: Source, options: ReadOptions) -> Trajectories:
     return assemble(
         source, options, id=np.full(len(rows), id), frame=rows[:, 2], x=rows[:, 0], y=rows[:, 1],
         fps=GRAND_CENTRAL_FPS, units="px",
-        note="one person; the others of Grand Central are in files of the same folder, give the folder to read all",
+        note="one person; the others of Grand Central are in files of the same folder, give the folder to read all;"
+        f" {GRAND_CENTRAL_ORDER}",
     )  # fmt: skip
 
 
