@@ -18,6 +18,8 @@ from crowdbot.typing import Floats
 
 LARGEST = 1_000_000
 """Largest size of a file of calibration [bytes]."""
+LARGEST_NUMBER = 1e9
+"""Largest number of a calibration: no image, focal length or place is larger."""
 MOST_ROWS = 10_000_000
 """Largest number of rows of odometry."""
 MOUNT = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -86,10 +88,10 @@ def read_camera(file: Path | str) -> CameraCalibration:
         raise DataError(f"{path}: a calibration must be a mapping with image_width, image_height and camera_matrix")
     model = whole.get("distortion_model", "plumb_bob")
     if model != "plumb_bob":
-        raise DataError(f"{path}: distortion_model = {model!r} is not supported, it must be plumb_bob")
+        raise DataError(f"{path}: distortion_model = {_cut(model)} is not supported, it must be plumb_bob")
     matrix = _numbers(path, whole, "camera_matrix", 9)
     bend = _numbers(path, whole, "distortion_coefficients", 5) if "distortion_coefficients" in whole else [0.0] * 5
-    width, height = (_number(path, whole, name) for name in ("image_width", "image_height"))
+    width, height = (_whole(path, whole, name) for name in ("image_width", "image_height"))
     mount = whole.get("mount")
     if not isinstance(mount, dict) or not {"x", "y", "z"} <= set(mount) <= set(MOUNT):
         raise DataError(f"{path}: mount must have x, y, z [m], and may have roll, pitch and yaw [rad]")
@@ -98,7 +100,7 @@ def read_camera(file: Path | str) -> CameraCalibration:
         raise DataError(f"{path}: mount z = {place[2]} m must be above 0, the camera is above the floor")
     distortion: Any = tuple(bend)
     try:
-        lens = Lens(int(width), int(height), matrix[0], matrix[4], matrix[2], matrix[5], distortion)
+        lens = Lens(width, height, matrix[0], matrix[4], matrix[2], matrix[5], distortion)
     except InputError as error:
         raise DataError(f"{path}: {error}") from None
     return CameraCalibration(lens, place)
@@ -144,7 +146,8 @@ def _read_rows(path: Path, names: tuple[str, ...], what: str) -> Floats:
             if missing:
                 raise DataError(f"{path} has no column {missing[0]!r}; {what} need {', '.join(names)}")
             columns = [head.index(name) for name in names]
-            rows = np.loadtxt(lines, delimiter=",", usecols=columns, ndmin=2, max_rows=MOST_ROWS)
+            filled = (line for line in lines if line.partition("#")[0].strip())  # NumPy warns of rows without data
+            rows = np.loadtxt(filled, delimiter=",", usecols=columns, ndmin=2, max_rows=MOST_ROWS)
     except (OSError, ValueError) as error:
         raise DataError(f"{path} cannot be read as {what}: {error}") from None
     if not len(rows) or not np.isfinite(rows).all():
@@ -190,9 +193,24 @@ def iterate_frames(file: Path | str, lens: Lens, start: float) -> Iterator[tuple
 
 def _number(path: Path, table: dict[str, Any], name: str) -> float:
     value = table.get(name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise DataError(f"{path}: {name} = {value!r} must be a number")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST_NUMBER:
+        raise DataError(f"{path}: {name} = {_cut(value)} must be a number up to {LARGEST_NUMBER:g}")
     return float(value)
+
+
+def _whole(path: Path, table: dict[str, Any], name: str) -> int:
+    value = _number(path, table, name)
+    if not value.is_integer():
+        raise DataError(f"{path}: {name} = {value:g} must be a whole number of pixels")
+    return int(value)
+
+
+def _cut(value: Any) -> str:
+    """Return a value for a message; digits of a huge number are not converted, since Python limits that."""
+    if isinstance(value, int) and not abs(value) <= LARGEST_NUMBER:
+        return "a number beyond the limit"
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _numbers(path: Path, table: dict[str, Any], name: str, count: int) -> list[float]:
