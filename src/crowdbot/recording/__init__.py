@@ -1,5 +1,6 @@
 """Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
+from .agent_rows import AgentRows
 from .attachments import AttachedFile, SkippedAttachmentWarning, named_files, write_trial_files
 from .episode_branch import branch
 from .episode_export import READING_TABLES, export, folder_of
@@ -17,6 +18,7 @@ from .step_records import RecordedStep
 
 __all__ = [
     "READING_TABLES",
+    "AgentRows",
     "AttachedFile",
     "EpisodeRerun",
     "KeyframeWarning",

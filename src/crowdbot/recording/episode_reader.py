@@ -1,4 +1,4 @@
-"""Reader of episode files, with arrays over the recorded steps."""
+"""Reader of episode files, with the states of all recorded steps."""
 
 from __future__ import annotations
 
@@ -18,25 +18,28 @@ from crowdbot.core import EpisodeError, InputError, TickSchedule
 from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
 from crowdbot.humans import FallPose
 from crowdbot.messages import ContactEventRecord, ContactForceRecord, FallRecord
-from crowdbot.metrics import AgentStates, PersonImpact, TableRobot, people_table
+from crowdbot.metrics import PersonImpact, TableRobot, people_table
 from crowdbot.sensors import Reading
-from crowdbot.simulation import Order, RunFailure, ScanRow, log_of, read_order, tracks_of
+from crowdbot.simulation import Order, RunFailure, ScanRow, read_order, tracks_of
 from crowdbot.trials import floor_plan_of_xml
 from crowdbot.typing import Floats
-from crowdbot.world import REACTIONS
 
+from .agent_rows import AgentRows, RobotRow
 from .episode_repair import EpisodeEnd
 from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, FORMAT, KEYS, METADATA, from_json
 from .step_records import (
     RecordedContact,
     RecordedSequence,
     RecordedStep,
+    RobotState,
     StepReadings,
     read_reading,
     read_scan,
     read_steps,
 )
 
+TABLE_CELLS = 1_000_000
+"""Number of times and ids ``T * A`` of which the table of people is made at once; some 200 MB."""
 ODOM = "/odom"
 """Ending of the frame in which the root link of a robot moves."""
 
@@ -49,12 +52,8 @@ class RecordedEpisode:
         path: the file.
         metadata: metadata records ``crowdbot`` and ``crowdbot.end`` as text: trial (XML), seed, versions, digest, ...
         complete: whether the file is complete; otherwise the run was killed, and the outcome is ``interrupted``.
-        times: times ``[T]`` [s].
-        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for absent agents.
-        heading: ``[T, A]`` [rad].
-        radius: ``[A]`` [m].
-        active: ``[T, A]``.
-        ids: ``[A]``.
+        rows: who was present at each time; its memory grows with what was recorded. The arrays with a column for each
+            id, such as :attr:`position`, are made of it when they are asked for.
         robots: indices of the robots.
         commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s].
         readings: all readings by ``robot/sensor``, each read from the file when it is asked for; a damaged one raises
@@ -66,7 +65,6 @@ class RecordedEpisode:
         contacts: contacts of robots in all time steps.
         forces, collisions, falls: contact forces, contact events and falls of people of the physics world.
         orders: time [s] and content of the orders from outside.
-        reactions: ``[T, A]`` codes of reactions to robots, see :class:`Episode`; None if nobody can react.
         digests: ``[T]`` digest of the episode up to each step, as if interrupted there.
         joints: positions ``[T]`` [rad] or [m] of the joints by robot and name, NaN while the robot is absent.
         fall_poses: poses of people out of balance by id, one mapping for each of the T times.
@@ -76,13 +74,7 @@ class RecordedEpisode:
     path: Path
     metadata: Mapping[str, str]
     complete: bool
-    times: Floats
-    position: Floats
-    velocity: Floats
-    heading: Floats
-    radius: Floats
-    active: NDArray[np.bool_]
-    ids: NDArray[np.int64]
+    rows: AgentRows
     robots: tuple[int, ...]
     commands: Floats
     scans_by_topic: Mapping[str, RecordedSequence[ScanRow]]
@@ -95,10 +87,55 @@ class RecordedEpisode:
     collisions: tuple[ContactEventRecord, ...] = ()
     falls: tuple[FallRecord, ...] = ()
     orders: tuple[tuple[float, Order], ...] = ()
-    reactions: NDArray[np.int8] | None = None
     joints: Mapping[str, Mapping[str, Floats]] = field(default_factory=dict)
     fall_poses: tuple[Mapping[int, FallPose], ...] = ()
     tilts: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)))
+
+    @property
+    def times(self) -> Floats:
+        """Times ``[T]`` [s]."""
+        return self.rows.times
+
+    @functools.cached_property
+    def position(self) -> Floats:
+        """Positions ``[T, A, 2]`` [m], 0 for absent agents.
+
+        Raises:
+            EpisodeError: the array is too large, see :meth:`AgentRows.dense`.
+        """
+        return self.rows.dense(self.rows.position)
+
+    @functools.cached_property
+    def velocity(self) -> Floats:
+        """Velocities ``[T, A, 2]`` [m/s], likewise."""
+        return self.rows.dense(self.rows.velocity)
+
+    @functools.cached_property
+    def heading(self) -> Floats:
+        """Headings ``[T, A]`` [rad], likewise."""
+        return self.rows.dense(self.rows.heading)
+
+    @functools.cached_property
+    def active(self) -> NDArray[np.bool_]:
+        """Who is present ``[T, A]``, likewise."""
+        return self.rows.dense(np.ones(len(self.rows.ids), dtype=np.bool_))
+
+    @functools.cached_property
+    def reactions(self) -> NDArray[np.int8] | None:
+        """Codes of reactions to robots ``[T, A]``, see :class:`Episode`, likewise; None if nobody can react."""
+        return None if self.rows.reactions is None else self.rows.dense(self.rows.reactions)
+
+    @functools.cached_property
+    def ids(self) -> NDArray[np.int64]:
+        """Ids ``[A]``: 0 to A - 1."""
+        return self.rows.every
+
+    @functools.cached_property
+    def radius(self) -> Floats:
+        """Radii ``[A]`` [m], 0 of ids that were never present."""
+        found = np.zeros(len(self.ids))
+        found[self.rows.ids] = self.rows.radius
+        return found
 
     @property
     def xml(self) -> str:
@@ -166,7 +203,7 @@ class RecordedEpisode:
                 if collision.first in names and collision.region and collision.second.isdecimal()
             ]
             impacts = [PersonImpact(int(hit.second), hit.peak_force, hit.severity) for hit in hits]
-        return people_table(log_of(self), robots, impacts)
+        return _people_table(self.rows, robots, impacts)
 
     @property
     def footprints(self) -> tuple[Floats | None, ...]:
@@ -180,13 +217,13 @@ class RecordedEpisode:
 
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories, see :meth:`Episode.tracks`."""
-        return tracks_of(self, self.name, dt)
+        return tracks_of(_TracksView(self), self.name, dt)
 
     def _repr_svg_(self) -> str:
         """Return a drawing of walls, ground, doors and paths for notebooks."""
         period = self.schedule.period_ns / 1e9
         plan = floor_plan_of_xml(self.metadata["trial"], f"{self.path} (trial)")
-        return tracks_of(self, f"{self.name}, seed {self.seed}, {self.outcome}", period).drawing(plan)
+        return tracks_of(_TracksView(self), f"{self.name}, seed {self.seed}, {self.outcome}", period).drawing(plan)
 
     @property
     def schedule(self) -> TickSchedule:
@@ -197,6 +234,26 @@ class RecordedEpisode:
             return TickSchedule(step, int(self.metadata.get("period_ns", spacing or step)))
         except (ValueError, InputError):
             raise EpisodeError(f"{self.path}: the metadata step_ns and period_ns must be whole numbers [ns]") from None
+
+
+class _TracksView:
+    """What :func:`crowdbot.simulation.tracks_of` reads of an episode; positions are looked up in its rows."""
+
+    def __init__(self, episode: RecordedEpisode) -> None:
+        self.schedule, self.times, self.ids = episode.schedule, episode.times, episode.ids
+        self.active, self.robots, self.walls = episode.active, episode.robots, episode.walls
+        self.position = _PositionsOfRows(episode.rows)
+
+
+class _PositionsOfRows:
+    def __init__(self, rows: AgentRows) -> None:
+        self._rows = rows
+        self._keys = np.repeat(np.arange(len(rows.times)), np.diff(rows.starts)) * rows.count + rows.ids
+
+    def __getitem__(self, cells: tuple[NDArray[np.int64], NDArray[np.int64]]) -> Floats:
+        """Return the positions ``[N, 2]`` of agents who are present at times: numbers of times and ids ``[N]``."""
+        step, agent = cells
+        return self._rows.position[np.searchsorted(self._keys, step * self._rows.count + agent)]
 
 
 def read_episode(path: Path | str) -> RecordedEpisode:
@@ -331,30 +388,22 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
             ending.take(moment)
         known = known | ending.metadata()
         count = max([ending.count, *(1 + place for place in places)])
-    arrays = _Arrays.of(len(due), count)
+    machines: list[list[RobotRow]] = []
     commands = np.full((len(due), len(robots), 3), np.nan)
-    for k, (moment, people) in enumerate(due):
-        arrays.put(k, people)
-        for r, robot in enumerate(robots):
-            if robot["name"] not in moment.robots:  # added later, or removed
-                continue
-            arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
-            commands[k, r] = moment.commands[robot["name"]]
+    for k, (moment, _) in enumerate(due):
+        present = [(r, robot, str(robot["name"])) for r, robot in enumerate(robots) if robot["name"] in moment.robots]
+        machines.append([_robot_row(places[r], robot, moment.robots[name]) for r, robot, name in present])
+        for r, _, name in present:  # others are added later, or removed
+            commands[k, r] = moment.commands[name]
+    rows = AgentRows.of([people for _, people in due], machines, count, [moment.reactions for moment, _ in due])
     scans, readings = _places(moment.scans for moment in found), _places(moment.readings for moment in found)
-    times = np.array([moment.time for moment, _ in due])
     if "added_robots" in known:
         known = known | {"robots": json.dumps(robots)}
     return RecordedEpisode(
         path,
         known,
         complete,
-        times,
-        arrays.position,
-        arrays.velocity,
-        arrays.heading,
-        arrays.radius,
-        arrays.active,
-        np.arange(count, dtype=np.int64),
+        rows,
         tuple(places),
         commands,
         {name: RecordedSequence(rows, read_scan) for name, rows in scans.items()},
@@ -367,41 +416,36 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         tuple(collision for moment in found for collision in moment.collisions),
         tuple(fall for moment in found for fall in moment.falls),
         tuple((moment.time, read_order(text)) for moment in found for text in moment.orders),
-        reaction_arrays([moment for moment, _ in due], count),
         joint_positions([moment for moment, _ in due]),
         tuple(moment.fall_poses for moment, _ in due),
         robot_tilts([moment for moment, _ in due], [robot["name"] for robot in robots]),
     )
 
 
-@dataclass
-class _Arrays:
-    position: Floats
-    velocity: Floats
-    heading: Floats
-    radius: Floats
-    active: NDArray[np.bool_]
+def _robot_row(id: int, robot: Mapping[str, Any], state: RobotState) -> RobotRow:
+    return RobotRow(id, float(robot["radius"]), state.x, state.y, state.heading, state.vx, state.vy)
 
-    @classmethod
-    def of(cls, count: int, agents: int) -> _Arrays:
-        """Return empty arrays."""
-        shape = (count, agents)
-        return cls(
-            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(agents), np.zeros(shape, dtype=bool)
-        )
 
-    def put(self, k: int, people: AgentStates) -> None:
-        """Add people at a step."""
-        if np.any(people.ids < 0):
-            raise ValueError(f"a person has the id {people.ids.min()}")
-        self.position[k, people.ids], self.velocity[k, people.ids] = people.position, people.velocity
-        self.heading[k, people.ids], self.radius[people.ids] = people.heading, people.radius
-        self.active[k, people.ids] = True
-
-    def put_robot(self, k: int, place: int, radius: float, state: Any) -> None:
-        """Add a robot at a step."""
-        self.position[k, place], self.velocity[k, place] = (state.x, state.y), (state.vx, state.vy)
-        self.heading[k, place], self.radius[place], self.active[k, place] = state.heading, radius, True
+def _people_table(
+    rows: AgentRows, robots: Sequence[TableRobot], impacts: Sequence[PersonImpact] | None
+) -> dict[str, NDArray[Any]]:
+    """Return the table of people, made of as many people at a time as fit in arrays with a column for each of them."""
+    machines = np.array(sorted(robot.id for robot in robots), dtype=np.int64)
+    people = np.setdiff1d(rows.present(), machines)
+    # never one person alone if there are others: NumPy adds a single column in another order
+    parts = max(1, min(len(people) // 2, math.ceil(len(people) * len(rows.times) / TABLE_CELLS)))
+    tables = []
+    for part in np.array_split(people, parts):
+        ids = np.union1d(part, machines)
+        columns = {number: column for column, number in enumerate(ids.tolist())}
+        table = people_table(
+            rows.log(ids),
+            [robot._replace(id=columns[robot.id]) for robot in robots],
+            None if impacts is None else [hit._replace(person=columns[hit.person]) for hit in impacts
+                                          if hit.person in columns],
+        )  # fmt: skip
+        tables.append({**table, "id": ids[table["id"]]})
+    return {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
 
 
 def joint_positions(found: Sequence[RecordedStep]) -> dict[str, dict[str, Floats]]:
@@ -413,17 +457,6 @@ def joint_positions(found: Sequence[RecordedStep]) -> dict[str, dict[str, Floats
             for name, (position, _) in joints.items():
                 columns.setdefault(name, np.full(len(found), np.nan))[k] = position
     return rows
-
-
-def reaction_arrays(found: Sequence[RecordedStep], count: int) -> NDArray[np.int8] | None:
-    """Return the codes of the reactions to robots ``[T, A]``; None if nobody can react."""
-    if not found or any(moment.reactions is None for moment in found):
-        return None
-    codes = np.zeros((len(found), count), dtype=np.int8)
-    for k, moment in enumerate(found):
-        for kind, people in (moment.reactions or {}).items():
-            codes[k, people] = REACTIONS.index(kind)
-    return codes
 
 
 def robot_tilts(found: Sequence[RecordedStep], names: Sequence[str]) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from crowdbot.core.outlines import outline_of
 from crowdbot.metrics import outline_clearance
 from crowdbot.recording import RecordedEpisode
 from crowdbot.simulation import PushOrder
-from crowdbot.typing import Floats
+from crowdbot.typing import Floats, Ints
 
 NEAR_MISS = 0.2
 """Clearance [m] below which passing is a near miss; CrowdNav calls it discomfort."""
@@ -20,6 +21,8 @@ STALL_SPEED, STALL = 0.05, 1.0
 """Speed [m/s] below which a robot stands, and time [s] after which this is a stall."""
 APART = 1.0
 """Time [s] within which contacts with the same body are one event."""
+PART = 500
+"""Number of times whose clearances are computed at once."""
 MOST_POINTS = 2000
 """Largest number of points of a plot."""
 
@@ -49,33 +52,48 @@ def episode_series(episode: RecordedEpisode) -> dict[str, list[float | None]]:
 
     Long episodes are thinned; the smallest clearance of each interval is kept.
     """
-    times = episode.times
-    people = episode.active.copy()
-    people[:, list(episode.robots)] = False
+    times, rows = episode.times, episode.rows
+    robots = np.isin(rows.ids, episode.robots)
+    people = np.diff(np.concatenate([[0], np.cumsum(~robots)])[rows.starts])
     stride = max(1, math.ceil(len(times) / MOST_POINTS))
-    result = {"time": _plain(times[::stride]), "people": _plain(people.sum(axis=1)[::stride].astype(np.float64))}
+    result = {"time": _plain(times[::stride]), "people": _plain(people[::stride].astype(np.float64))}
     if episode.robots:
         robot = episode.robots[0]
-        nearest = _clearance(episode, robot).min(axis=1)
+        nearest = np.concatenate([gaps.min(axis=1) for _, _, gaps in _clearances(episode, robot)])
         starts = np.arange(0, len(times), stride)
         result["clearance"] = _plain(np.minimum.reduceat(nearest, starts))
-        result["speed"] = _plain(np.hypot(*episode.velocity[:, robot].T)[::stride])
+        result["speed"] = _plain(_speeds(episode, robot)[::stride])
     return result
 
 
-def _clearance(episode: RecordedEpisode, robot: int) -> Floats:
-    """Return the smallest clearance ``[T, A]`` [m] of each agent to the outline of a robot since the last record."""
-    footprint = episode.footprints[episode.robots.index(robot)]
-    return outline_clearance(
-        episode.times,
-        episode.position,
-        episode.velocity,
-        episode.heading[:, robot],
-        episode.radius,
-        episode.active,
-        robot,
-        None if footprint is None else outline_of(footprint),
-    ).swept
+def _speeds(episode: RecordedEpisode, robot: int) -> Floats:
+    """Return the speed ``[T]`` [m/s] of a robot."""
+    return np.asarray(np.hypot(*episode.rows.log([robot]).velocity[:, 0].T))
+
+
+def _clearances(episode: RecordedEpisode, robot: int) -> Iterator[tuple[int, Ints, Floats]]:
+    """Yield the smallest clearance ``[P, N]`` [m] of agents to the outline of a robot since the last record.
+
+    The episode comes in parts of P times, each with the number of its first time and the ids ``[N]`` of those who are
+    present in it, so that arrays stay small where each arrival has a new id.
+    """
+    footprint, rows = episode.footprints[episode.robots.index(robot)], episode.rows
+    for first in range(0, len(rows.times), PART):
+        before, last = max(0, first - 1), min(first + PART, len(rows.times))
+        ids = np.union1d(rows.present(before, last), robot)
+        log = rows.log(ids, before, last)
+        own = int(np.searchsorted(ids, robot))
+        swept = outline_clearance(
+            log.times,
+            log.position,
+            log.velocity,
+            log.heading[:, own],
+            log.radius[0],
+            log.active,
+            own,
+            None if footprint is None else outline_of(footprint),
+        ).swept
+        yield first, ids, swept[first - before :]
 
 
 def _contacts(episode: RecordedEpisode) -> list[EpisodeEvent]:
@@ -107,19 +125,23 @@ def _body(name: str) -> str:
 
 
 def _near_misses(episode: RecordedEpisode, robot: int, name: str) -> list[EpisodeEvent]:
-    gaps = _clearance(episode, robot)
+    found: dict[int, list[tuple[int, float]]] = {}  # times and clearances by person
+    for first, ids, gaps in _clearances(episode, robot):
+        for k, column in np.argwhere(gaps < NEAR_MISS).tolist():
+            found.setdefault(int(ids[column]), []).append((first + k, float(gaps[k, column])))
     events = []
-    for person in np.flatnonzero((gaps < NEAR_MISS).any(axis=0)).tolist():
-        for first, last in _stretches(gaps[:, person] < NEAR_MISS):
-            k = first + int(np.argmin(gaps[first:last, person]))
-            if gaps[k, person] > 0.0:
-                about = f"{name} passes person {int(episode.ids[person])} at {gaps[k, person]:.2f} m"
+    for person, passes in found.items():
+        steps = np.array([k for k, _ in passes])
+        for stretch in np.split(np.arange(len(steps)), np.flatnonzero(np.diff(steps) > 1) + 1):
+            k, gap = min((passes[n] for n in stretch.tolist()), key=lambda item: item[1])
+            if gap > 0.0:
+                about = f"{name} passes person {person} at {gap:.2f} m"
                 events.append(EpisodeEvent(round(float(episode.times[k]), 3), "near miss", about))
     return events
 
 
 def _stalls(episode: RecordedEpisode, robot: int, name: str) -> list[EpisodeEvent]:
-    stands = np.hypot(*episode.velocity[:, robot].T) < STALL_SPEED
+    stands = _speeds(episode, robot) < STALL_SPEED
     events = []
     for first, last in _stretches(stands):
         time = float(episode.times[last - 1] - episode.times[first])

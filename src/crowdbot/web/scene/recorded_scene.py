@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core import Scene
 from crowdbot.humans import FallPose, blend_fall_poses
-from crowdbot.recording import RecordedEpisode
+from crowdbot.recording import AgentRows, RecordedEpisode
 from crowdbot.sensors import Reading
 from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
 from crowdbot.typing import Floats, Ints
@@ -43,11 +43,13 @@ def simulation_reason(simulation: Simulation, episode: RecordedEpisode, changes:
     if world.doors is not None or any(prop.movable for prop in (world.stage.props if world.walls_fixed else ())):
         return "doors or props move"
     return (
-        "" if recorded_slots(simulation.world.ids[0], episode) is not None else "more people are present than at once"
+        ""
+        if recorded_slots(simulation.world.ids[0], episode.rows) is not None
+        else "more people are present than at once"
     )
 
 
-def recorded_slots(first: Ints, episode: RecordedEpisode) -> Ints | None:
+def recorded_slots(first: Ints, rows: AgentRows) -> Ints | None:
     """Return the row in a scene of each id of an episode; None if the scene has too few rows.
 
     Somebody who enters, or comes out of a portal, takes the row of somebody who has left: the one who left at the same
@@ -55,24 +57,28 @@ def recorded_slots(first: Ints, episode: RecordedEpisode) -> Ints | None:
 
     Args:
         first: ids in the scene at the start ``[A]``.
-        episode: the episode.
+        rows: people and robots of the episode.
 
-    >>> import types
-    >>> active = np.array([[1, 1, 0, 0], [1, 0, 1, 0], [0, 0, 1, 1]], dtype=bool)
-    >>> recorded_slots(np.array([0, 1]), types.SimpleNamespace(active=active)).tolist()
+    >>> from crowdbot.metrics import AgentStates
+    >>> present = [np.array(ids) for ids in ([0, 1], [0, 2], [2, 3])]
+    >>> still = np.zeros((2, 2))
+    >>> states = [AgentStates(0.1 * k, ids, still, still, still[0], still[0]) for k, ids in enumerate(present)]
+    >>> recorded_slots(np.array([0, 1]), AgentRows.of(states, [[], [], []], 4)).tolist()
     [0, 1, 1, 0]
     """
-    slots = np.full(episode.active.shape[1], -1, dtype=np.int64)
+    slots = np.full(len(rows.every), -1, dtype=np.int64)
     known = np.flatnonzero((first >= 0) & (first < len(slots)))
     slots[first[known]] = known
-    changed = np.flatnonzero((episode.active[1:] != episode.active[:-1]).any(axis=1)) + 1
-    free = set(range(len(first))) - set(slots[episode.active[0]].tolist())
-    for k in (0, *changed.tolist()):
-        now = episode.active[k]
-        left = [] if k == 0 else sorted(slots[episode.active[k - 1] & ~now].tolist())
-        new = np.flatnonzero(now & (slots < 0)).tolist()
+    before = rows.ids[rows.at(0)]
+    free = set(range(len(first))) - set(slots[before].tolist())
+    for k in range(len(rows.times)):
+        now = rows.ids[rows.at(k)]
+        if k > 0 and np.array_equal(now, before):
+            continue
+        left = [] if k == 0 else sorted(slots[np.setdiff1d(before, now, assume_unique=True)].tolist())
+        new = now[slots[now] < 0].tolist()
         free |= set(left)
-        free -= set(slots[now & (slots >= 0)].tolist())
+        free -= set(slots[now[slots[now] >= 0]].tolist())
         for item in new:
             same = next((slot for slot in left if slot in free), None)
             chosen = min(free, default=None) if same is None else same
@@ -80,6 +86,7 @@ def recorded_slots(first: Ints, episode: RecordedEpisode) -> Ints | None:
                 return None
             slots[item] = chosen
             free.discard(chosen)
+        before = now
     return slots
 
 
@@ -101,7 +108,7 @@ class RecordedScene:
         self.motion: PeopleMotion = motion
         self.scene: Scene = simulation.world.environment_scene(0)
         self._first, self._last = float(episode.times[0]), float(episode.times[-1])
-        slots = recorded_slots(simulation.world.ids[0], episode)
+        slots = recorded_slots(simulation.world.ids[0], episode.rows)
         assert slots is not None  # see simulation_reason
         self._slots = slots
         self.ids = simulation.world.ids[0].copy()
@@ -111,7 +118,7 @@ class RecordedScene:
         self._force_times = [force.time for force in episode.forces]
         trial = simulation.trial
         self._fixed_goals = not (
-            trial.journeys or trial.portals or trial.sources or episode.reactions is not None or episode.orders
+            trial.journeys or trial.portals or trial.sources or episode.rows.reactions is not None or episode.orders
         )
 
     def at(self, seconds: float) -> SceneInstant:
@@ -131,20 +138,20 @@ class RecordedScene:
 
     def scene_at(self, seconds: float) -> Scene:
         """Return people and robots at an instant [s]."""
-        one, (k, share) = self.episode, self._place(seconds)
-        following = min(k + 1, len(one.times) - 1)
-        here = np.flatnonzero(one.active[k])
-        way = one.position[following, here] - one.position[k, here]
-        stays = one.active[following, here] & (np.abs(way).max(axis=-1) < FAR)
+        one, (k, share) = self.episode.rows, self._place(seconds)
+        here = one.at(k)
+        following, present = one.find(min(k + 1, len(one.times) - 1), one.ids[here])
+        way = one.position[following] - one.position[here]
+        stays = present & (np.abs(way).max(axis=-1) < FAR)
         part = np.where(stays, share, 0.0)
-        turn = one.heading[following, here] - one.heading[k, here]
-        faster = one.velocity[following, here] - one.velocity[k, here]
-        rest, slots = self.simulation.world.environment_scene(0), self._slots[here]
+        turn = one.heading[following] - one.heading[here]
+        faster = one.velocity[following] - one.velocity[here]
+        rest, slots = self.simulation.world.environment_scene(0), self._slots[one.ids[here]]
         position, velocity = np.zeros(rest.position.shape), np.zeros(rest.position.shape)
         heading, active = np.zeros(rest.shape), np.zeros(rest.shape, dtype=bool)
-        position[0, slots] = one.position[k, here] + part[:, None] * way
-        velocity[0, slots] = one.velocity[k, here] + part[:, None] * faster
-        heading[0, slots] = one.heading[k, here] + part * np.arctan2(np.sin(turn), np.cos(turn))
+        position[0, slots] = one.position[here] + part[:, None] * way
+        velocity[0, slots] = one.velocity[here] + part[:, None] * faster
+        heading[0, slots] = one.heading[here] + part * np.arctan2(np.sin(turn), np.cos(turn))
         active[0, slots] = True
         self.ids[slots] = one.ids[here]
         return rest.replace(position=position, velocity=velocity, heading=heading, active=active)
@@ -156,7 +163,7 @@ class RecordedScene:
         before, after = (known[min(item, len(known) - 1)] if known else {} for item in (k, k + 1))
         found = {}
         for person in {*before, *after}:
-            if 0 <= person < len(self._slots) and self.episode.active[k, person]:
+            if self.episode.rows.find(k, np.array([person]))[1][0]:
                 row = int(self.motion.row[self._slots[person]])
                 found[row] = blend_fall_poses(before.get(person), after.get(person), share)
         return {row: pose for row, pose in sorted(found.items()) if row >= 0}
