@@ -99,7 +99,8 @@ class Window:
             return False
         if isinstance(message.get("drawn"), int):
             self._drawn = max(self._drawn, min(message["drawn"], self._sent))
-            self._wake.set()
+            if self._frames:  # as a rule none waits, and waking the writer for nothing costs a tenth of a frame
+                self._wake.set()
             return True
         if "wants" in message:
             return self._choose(message["wants"])

@@ -17,7 +17,7 @@ from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
 from crowdbot.typing import Floats, Ints
 from crowdbot.world import PeopleMotion, worlds_of
 
-from .robot_links import link_frames, standing_links
+from .robot_links import link_frames, poses_of, standing_links
 from .scene_instant import SceneInstant
 from .walking_bodies import WalkingBodies
 
@@ -198,7 +198,7 @@ class RecordedScene:
         }
         known = {name: at for name, at in joints.items() if math.isfinite(at)}
         tilt = self._tilt(control.robot.name, k, following, share)
-        return standing_links(self.scene, control.agent, link_frames(body, known, tilt))
+        return standing_links(self.scene, control.agent, poses_of(link_frames(body, known, tilt)))
 
     def _tilt(self, robot: str, k: int, following: int, share: float) -> tuple[float, float, float] | None:
         """Return height [m], roll and pitch [rad] of the root link; None if they are not those of an engine."""

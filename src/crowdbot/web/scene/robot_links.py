@@ -28,27 +28,40 @@ def link_poses(simulation: Simulation, scene: Any, control: RobotControl) -> Flo
     if body is not None:
         frames = body.frames()
         found = np.array([frames[name] for name in names]).reshape(-1, 4, 4)
-        return np.concatenate([found[:, :3, 3], quaternions(found[:, :3, :3])], axis=1)
+        return poses_of(found)
     targets = tuple(None if math.isnan(at) else at for at in control.joints[0].tolist())  # NaN is never cached
     return standing_links(scene, control.agent, _resting(robot, targets))
 
 
 def standing_links(scene: Any, agent: int, links: Floats) -> Floats:
-    """Return position [m] and quaternion ``[L, 7]`` in the world of links ``[L, 4, 4]`` of an upright robot."""
-    x, y = scene.position[0, agent].tolist()
-    heading = float(scene.heading[0, agent])
-    base = np.eye(4)
-    base[:2, :2] = [[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]]
-    base[:2, 3] = x, y
-    found = base @ links
-    return np.concatenate([found[:, :3, 3], quaternions(found[:, :3, :3])], axis=1)
+    """Return position [m] and quaternion ``[L, 7]`` in the world of links ``[L, 7]`` in the frame of an upright robot.
+
+    >>> from crowdbot.core import Scene
+    >>> scene = Scene.of([[1.0, 0.0]], [[0.0, 0.0]], heading=[math.pi / 2])
+    >>> standing_links(scene, 0, np.array([[0.5, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0]])).round(3).tolist()
+    [[1.0, 0.5, 0.1, 0.707, 0.0, 0.0, 0.707]]
+    """
+    place, heading = scene.position[0, agent], float(scene.heading[0, agent])
+    cos, sin = math.cos(heading), math.sin(heading)
+    c, s = math.cos(0.5 * heading), math.sin(0.5 * heading)
+    turn = np.zeros((7, 7))  # both parts of a pose are linear in those of the link: one product for all links
+    turn[:3, :3] = [[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]
+    turn[3:, 3:] = [[c, 0.0, 0.0, -s], [0.0, c, -s, 0.0], [0.0, s, c, 0.0], [s, 0.0, 0.0, c]]
+    found = links @ turn.T
+    found[:, :2] += place
+    return np.asarray(found)
+
+
+def poses_of(frames: Floats) -> Floats:
+    """Return position and quaternion ``[L, 7]`` of frames ``[L, 4, 4]``."""
+    return np.concatenate([frames[:, :3, 3], quaternions(frames[:, :3, :3])], axis=1)
 
 
 @functools.lru_cache(maxsize=64)
 def _resting(robot: Robot, targets: tuple[float | None, ...]) -> Floats:
-    """Return the frames ``[L, 4, 4]`` of the links with shapes in the base frame; None for joints without a target."""
+    """Return the poses ``[L, 7]`` of the links with shapes in the base frame; None for joints without a target."""
     joints = {name: at for name, at in zip(free_joints(robot), targets, strict=True) if at is not None}
-    return link_frames(robot, joints)
+    return poses_of(link_frames(robot, joints))
 
 
 def link_frames(
