@@ -97,6 +97,9 @@ def test_a_result_of_the_command_line_is_opened_and_its_runs_are_watched(desk, r
     assert [item["estimates"] for item in table["cells"]] == [
         [str(cell.estimate(metric)) for metric in table["statistics"]] for cell in same.cells
     ]
+    assert len(table["comparisons"]) >= 2  # each has the name of its column
+    assert all(any(f", {title}: " in line for title in table["titles"]) for line in table["comparisons"])
+    assert any(", person-collision-rate [share]: orca" in line for line in table["comparisons"])
     assert table["command"].split()[1:4] == ["evaluate", "frontal", "mine.xml"]
     assert b"<html" in desk.resource(f"{name}/report.html", {}).data
     found = desk.watch(name, 1, 1)

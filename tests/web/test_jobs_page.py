@@ -1,6 +1,7 @@
 """A person's path through the jobs tab: start a search for failures, reload, see its results, remove it."""
 
 import json
+import re
 
 import pytest
 from playwright.sync_api import expect
@@ -32,6 +33,8 @@ def test_a_job_survives_a_reload_and_gives_its_results(done, app, axe):
     page = done
     job = page.get_by_role("listitem").filter(has_text="tries")
     expect(job).to_contain_text("crowdbot falsify frontal --navigator=straight")
+    expect(job.locator(".kind")).to_have_text("Search for failures")
+    expect(job).to_contain_text(re.compile(r"started (today|yesterday) at \d+:\d\d"))
     page.get_by_role("button", name="Log tries").click()
     expect(page.get_by_role("region", name="Log")).to_contain_text("4 runs in")
     assert axe(page) == []

@@ -52,13 +52,15 @@ def run(page, rows):
     expect(page.locator(".metrics tbody tr")).to_have_count(rows, timeout=LONG)
     expect(page.get_by_role("button", name="Cancel")).to_be_disabled(timeout=LONG)
     assert overhang(page) <= 0
+    assert overhang(page, "Height") <= 0
+    values = "[...document.querySelectorAll('.metrics td span')]"
+    assert page.evaluate(f"{values}.length") >= 8 * rows
+    assert page.evaluate(f"{values}.filter((one) => one.getClientRects().length !== 1).length") == 0  # none is broken
 
 
-def overhang(page):
-    """Pixels of the table of metrics that are seen only after scrolling sideways."""
-    return page.evaluate(
-        "(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)(document.querySelector('.table-place'))"
-    )
+def overhang(page, side="Width"):
+    """Pixels of the table of metrics that are seen only after scrolling."""
+    return page.evaluate(f"((one) => one.scroll{side} - one.client{side})(document.querySelector('.table-place'))")
 
 
 def test_a_first_prediction_by_mouse(tab, app, axe, capsys):

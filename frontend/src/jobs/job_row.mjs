@@ -1,6 +1,7 @@
 // A job in the list: state, progress, command, and what can be done with it.
 import { h } from "../ui/dom.mjs";
 import { copyText } from "../ui/copy.mjs";
+import { dayAndTime } from "../ui/time.mjs";
 
 const SIGNS = { waiting: "…", running: "▶", done: "✓", failed: "✗", cancelled: "■", interrupted: "!" };
 
@@ -16,14 +17,16 @@ export function jobRow(job, actions) {
   const active = job.state === "waiting" || job.state === "running";
   const button = (text, action) => h("button", { type: "button", "aria-label": `${text} ${job.title}`, onclick: () => action(job) }, text);
   const bar = h("progress", { max: 1, value: job.share, "aria-label": `Progress of ${job.title}` });
-  const words = h("span", { class: "note" });
+  const words = h("span", { class: "note" }), log = h("span", { class: "note" });
   const update = (now) => {
     Object.assign(job, now);
     if (job.state === "running" && job.share === 0 && !still.matches) bar.removeAttribute("value");
     else bar.value = job.share;
     const share = active ? `${Math.round(100 * job.share)} %, ` : "";
-    const since = new Date(1000 * job.created).toLocaleString([], { dateStyle: "short", timeStyle: "short" });
-    words.textContent = `${share}${units.seconds(job.seconds)}, ${job.state === "waiting" ? "added" : "started"} ${since}${active && job.note ? ` · ${job.note}` : ""}`;
+    const since = dayAndTime(new Date(1000 * job.created));
+    words.textContent = job.state === "waiting" ? `added ${since}` : `${share}${units.seconds(job.seconds)}, started ${since}`;
+    log.textContent = active && job.note ? `Log: ${job.note}` : "";
+    log.hidden = !log.textContent;
   };
   const copy = h("button", { type: "button", class: "link", onclick: () => copyText(job.command, "Copy as command line") }, "Copy command");
   const element = h(
@@ -32,6 +35,7 @@ export function jobRow(job, actions) {
     h("div", { class: "job-head" }, h("span", { class: "sign", "aria-hidden": "true" }, SIGNS[job.state]), h("strong", {}, job.title), h("span", { class: "kind" }, job.kind), h("span", { class: "state" }, job.state)),
     active ? bar : null,
     words,
+    log,
     job.problem ? h("p", { class: "problem" }, job.problem) : null,
     job.command ? h("p", { class: "command" }, h("code", {}, job.command)) : null,
     h(

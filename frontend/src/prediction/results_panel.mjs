@@ -51,10 +51,16 @@ function metricTable({ rows, caption }, columns) {
       "tr",
       { "data-key": row.key, "data-input": row.input },
       h("th", { scope: "row" }, sample(row.slot, row.input), " ", row.label, row.input === "degraded" ? " (degraded)" : "", row.note && h("small", {}, ` ${row.note}`)),
-      columns.map((one) => h("td", { class: "number" }, one.words[i])),
+      columns.map((one) => h("td", { class: "number" }, cell(one.words[i]))),
     ),
   );
   return h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, body));
+}
+
+/** A value and what stands in brackets behind it; a narrow table breaks between them and nowhere else. */
+function cell(words) {
+  const [value, ...more] = words.split(/ (?=\()/);
+  return [h("span", {}, value), ...more.flatMap((one) => [" ", h("span", {}, one)])];
 }
 
 export function makePersonPanel(store) {

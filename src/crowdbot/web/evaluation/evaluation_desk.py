@@ -7,6 +7,7 @@ import math
 import re
 import shlex
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -112,7 +113,7 @@ class EvaluationDesk(Desk):
             request.save(out)
             self._problem = ""
             results = f"{FOLDER}/{name}"
-            work = command_work(name, (*request.words, "--out", results), folder, results)
+            work = command_work("Evaluation", name, (*request.words, "--out", results), folder, results)
             self._job = self.session.jobs.submit(work, ended=self._ended)
         return self._tell()
 
@@ -149,7 +150,7 @@ class EvaluationDesk(Desk):
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
             "robots": list(request.lines) if request else [],
             "remarks": remark_lines(result.cells),
-            "comparisons": [_sentence(item) for item in result.compare() if not math.isnan(item.p_value)],
+            "comparisons": _sentences(result.compare(), (*names, *METRICS)),
             "report": (self._folder(name) / "report.html").is_file(),
         }
 
@@ -257,7 +258,15 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
     }
 
 
-def _sentence(comparison: PairedComparison) -> str:
-    where = ", ".join(filter(None, (comparison.trial, comparison.robot)))
-    what = f"{where}, {comparison.metric}: {comparison.second} minus {comparison.first} = {comparison.difference}"
-    return f"{what}, p = {comparison.corrected:.3g} (corrected)"
+def _sentences(comparisons: Sequence[PairedComparison], names: Sequence[str]) -> list[str]:
+    """Return the comparisons in words; a metric has the name and the unit of its column."""
+    statistics = [parse_statistic(name) for name in reversed(names)]
+    titles = {one.metric: one.title for one in statistics if one.kind in ("mean", "rate")}
+    sentences = []
+    for item in comparisons:
+        if math.isnan(item.p_value):
+            continue
+        where = ", ".join(filter(None, (item.trial, item.robot)))
+        what = f"{where}, {titles.get(item.metric, item.metric)}: {item.second} minus {item.first} = {item.difference}"
+        sentences.append(f"{what}, p = {item.corrected:.3g} (corrected)")
+    return sentences

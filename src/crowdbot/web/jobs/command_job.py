@@ -19,14 +19,14 @@ from .job_process import LINE, JobPipe
 LONGEST = 2000
 
 
-def command_work(title: str, words: tuple[str, ...], folder: Path, results: str) -> JobWork:
+def command_work(kind: str, title: str, words: tuple[str, ...], folder: Path, results: str) -> JobWork:
     """Return a job that runs ``crowdbot WORDS`` in a folder, so that its results are those of the command line.
 
-    >>> command_work("frontal", ("evaluate", "frontal"), Path("."), "").command
+    >>> command_work("Evaluation", "frontal", ("evaluate", "frontal"), Path("."), "").command
     'crowdbot evaluate frontal'
     """
     command = shlex.join(("crowdbot", *words))
-    return JobWork(words[0], title, run_command, (words, str(folder)), command, results, words)
+    return JobWork(kind, title, run_command, (words, str(folder)), command, results, words)
 
 
 def run_command(pipe: JobPipe, words: tuple[str, ...], folder: str) -> None:  # pragma: no cover - in another process

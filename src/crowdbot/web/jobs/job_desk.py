@@ -65,7 +65,7 @@ class JobDesk(Desk):
         space = self.session.workspace
         if words[0] == "train" and "--resume" not in words and (space.folder / record.results / LAST).is_file():
             words = (*words, "--resume")
-        work = command_work(record.title, words, space.folder, record.results)
+        work = command_work(record.kind, record.title, words, space.folder, record.results)
         return self.session.jobs.submit(work).record.number
 
     @command
@@ -115,7 +115,7 @@ class JobDesk(Desk):
         name = results_name(found["name"])
         results = f"{form.folder}/{name}" if form.folder else ""
         out = ("--out", results) if results else ()
-        return command_work(name, (*form.words(space, found), *out), space.folder, results)
+        return command_work(form.title, name, (*form.words(space, found), *out), space.folder, results)
 
     def _results(self, number: int) -> Path:
         record = self.session.jobs.record(number)

@@ -18,7 +18,7 @@ class JobRecord:
 
     Fields:
         number: its number in the session, from 1.
-        kind: such as ``evaluate`` or ``predict``.
+        kind: what kind of work it is, in words of the page, such as ``Search for failures``.
         title: short description.
         command: command line that does the same, or empty.
         words: arguments of the command if the job can be run again, or empty.
@@ -30,7 +30,7 @@ class JobRecord:
         created: time of its submission, seconds since 1970.
         seconds, cpu: duration and processor time [s].
 
-    >>> JobRecord(1, "generate", "first").active
+    >>> JobRecord(1, "Generate data", "first").active
     True
     """
 

@@ -42,7 +42,7 @@ class PredictionRun:
         self._total = len(task.members)
         self._done = 0
         self._ended = False
-        kind, target = ("calibrate", run_calibration) if calibrates else ("predict", run_task)
+        kind, target = ("Calibration", run_calibration) if calibrates else ("Prediction", run_task)
         self._job = jobs.submit(JobWork(kind, title, target, (task,), command), self._take, self._finish)
 
     @property
