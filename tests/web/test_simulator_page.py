@@ -225,6 +225,17 @@ def test_a_click_without_a_picture_is_answered(browser, serve, tmp_path):
     page.close()
 
 
+PAUSES = """async (count) => {
+  const found = [], { scene } = crowdbot.tab("simulator").picture;
+  for (let k = 0; k < count; k++) {
+    await new Promise((resolve) => setTimeout(resolve, 20));
+    found.push(scene.busy);
+  }
+  return found;
+}"""
+"""Whether a picture in space leaves the page to others, asked again and again."""
+
+
 def test_a_picture_without_a_graphics_card_leaves_time_to_the_compiler(browser, serve, tmp_path, monkeypatch):
     compiled = threading.Event()
 
@@ -248,6 +259,10 @@ def test_a_picture_without_a_graphics_card_leaves_time_to_the_compiler(browser, 
         state(page, "running")
         wait(page, f"{canvas}.width === {canvas}.clientWidth")
         assert not page.evaluate(f"{VIEW}.picture.scene.rests")
+        drawn = page.evaluate(f"{VIEW}.picture.scene.info().frames")
+        wait(page, f"{VIEW}.picture.scene.info().frames > {drawn + 2}")
+        asked = page.evaluate(PAUSES, 30)
+        assert sum(asked) > 20  # as a rule the page is asked in a pause, and not held up by the next picture
         page.close()
 
 

@@ -13,8 +13,10 @@ import { Views } from "./views.mjs";
 const SUN = new THREE.Vector3(-0.42, -0.55, 1);
 const SHADED = 22;
 const SHADOW_PIXELS = 2048;
-/** While a scene is sparing: time [ms] of a picture without a graphics card, its resolution, and pauses after each. */
+/** Time [ms] above which a picture is one without a graphics card: it holds up the page, which then gets a share of it. */
 const SLOW = 100;
+const BREATH = 0.5;
+/** Of such pictures, while a scene is sparing: the resolution, and the pauses after each. */
 const COARSE = 0.5;
 const PAUSE = 3;
 const LONGEST_PAUSE = 1000;
@@ -38,7 +40,7 @@ export class Scene3D {
     this._marked = new Map();
     this._frames = this._applied = this._work = 0;
     this._empty = false;
-    this._sparing = this._coarse = false;
+    this._sparing = this._coarse = this._slow = false;
     this._timed = this._resting = 0;
     this._theme = "light";
     this._build();
@@ -229,7 +231,7 @@ export class Scene3D {
     this._renderer.render(this._scene, this._views.camera);
     this._frames += 1;
     this._spent = performance.now() - begin;
-    if (this._sparing) this._time(begin);
+    if (!this._fence) this._time(begin);
   }
 
   /**
@@ -244,20 +246,33 @@ export class Scene3D {
     this._forgetTime();
   }
 
+  /**
+   * Whether the page comes first, where no graphics card draws: the picture before is not finished, or has just held up
+   * clicks and messages. Also until the first two pictures have told how long they take.
+   */
+  get busy() {
+    this._noteTime();
+    const pending = Boolean(this._fence) && (this._slow || this._timed < 2);
+    return pending || (this._slow && performance.now() < this._resting);
+  }
+
   /** Whether no picture may be drawn now: the one before is not finished, or a pause follows it. */
   get rests() {
-    if (!this._sparing) return false;
+    this._noteTime();
+    return this._sparing && (Boolean(this._fence) || performance.now() < this._resting);
+  }
+
+  /** Notes the time of the latest picture if it is finished. */
+  _noteTime() {
+    const gl = this._renderer.getContext();
+    if (!this._fence || gl.getSyncParameter(this._fence, gl.SYNC_STATUS) === gl.UNSIGNALED) return;
+    this._forgetTime();
     const now = performance.now();
-    if (this._fence) {
-      const gl = this._renderer.getContext();
-      if (gl.getSyncParameter(this._fence, gl.SYNC_STATUS) !== gl.SIGNALED) return true;
-      this._forgetTime();
-      const cost = now - this._begun;
-      this._coarse ||= this._timed > 0 && cost > SLOW; // the first picture compiles shaders
-      this._timed += 1;
-      if (this._coarse) this._resting = now + Math.min(LONGEST_PAUSE, PAUSE * cost);
-    }
-    return now < this._resting;
+    const cost = now - this._begun;
+    this._slow = this._timed > 0 && cost > SLOW; // the first picture compiles shaders
+    this._coarse ||= this._sparing && this._slow;
+    this._timed += 1;
+    this._resting = now + Math.min(LONGEST_PAUSE, (this._coarse ? PAUSE : this._slow ? BREATH : 0) * cost);
   }
 
   /** Renderer and scene, for who draws with a camera of his own, such as a headset. */

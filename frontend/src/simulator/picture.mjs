@@ -27,7 +27,7 @@ export class Picture {
     this._waiting = null;
     this._loading = null;
     this._awake = 0;
-    this._sparing = false;
+    this._sparing = this._owed = false;
     this._shown = true;
     this._seen = this.visible;
     this.place = h("div", { class: "stage-place" });
@@ -198,8 +198,9 @@ export class Picture {
     requestAnimationFrame(() => this._tick());
     if (!this._shown || !this.scene || !this.canvas.clientWidth) return this._finish();
     if (this._preview) drawPreview(this.overlay, this._preview, this.app.theme);
-    if (this._waiting === null && !this.motion.moving && performance.now() > this._awake) return undefined;
-    if (this.scene.rests) return undefined; // a frame that waits is drawn afterwards
+    if (this._waiting === null && !this.motion.moving && performance.now() > this._awake && !this._owed) return undefined;
+    this._owed = Boolean(this.scene.busy || this.scene.rests);
+    if (this._owed) return undefined; // what waits is drawn afterwards
     if (this._waiting !== null) this.frames += 1;
     this._apply();
     if (this.scene.state.frame) this.scene.render();
