@@ -1,5 +1,6 @@
 """The kernel cache: keyed by sources, placed where asked, warm in the next process."""
 
+import gc
 import os
 import shutil
 import subprocess
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba.core import event
 
 import crowdbot
 from crowdbot.core import kernels, prange
@@ -80,13 +82,27 @@ def _run(folder, program=PROGRAM, *words, path=None):
     return done.stdout.split() if program == PROGRAM else done.stderr
 
 
-def test_constants_and_indices_of_parallel_loops_compile_nothing_anew():
+def test_constants_and_indices_of_parallel_loops_compile_nothing_anew(monkeypatch, tmp_path):
+    monkeypatch.setattr(kernels, "cache_folder", lambda: tmp_path)  # nothing is there from an earlier run of the test
     values = np.zeros(3)
     add_at_three(values, 2)
     assert values.tolist() == [1.0, 1.0, 1.0]
     add_everywhere(values)
     assert values.tolist() == [2.0, 2.0, 2.0]
-    assert len(add.dispatcher.signatures) == 1
+    assert len(add.signatures) == 1
+    add(values, 0, 1.0)
+    assert values.tolist() == [3.0, 2.0, 2.0]
+    assert len(add.signatures) == 2  # with the wrapper for calls from Python, which calls in kernels do without
+
+
+def test_garbage_is_collected_seldom_while_a_kernel_is_compiled_and_as_before_afterwards():
+    assert add.dispatcher  # numba is loaded
+    usual = gc.get_threshold()
+    with event.trigger_event("numba:compile"):
+        with event.trigger_event("numba:compile"):
+            assert gc.get_threshold()[0] == kernels.OBJECTS
+        assert gc.get_threshold() == (kernels.OBJECTS, *usual[1:])
+    assert gc.get_threshold() == usual
 
 
 @pytest.mark.program

@@ -235,7 +235,7 @@ def test_scans_of_one_and_of_many_environments_with_any_labels_share_compiled_ke
         scene = Scene.of(np.full((environments, 1, 2), 50.0), bodies=Bodies.of(skins=skins))
         pose = SpatialPose.of(np.tile([0.0, 0.0, 1.0], (environments, 1)))
         cast_rays(scene, pose, sort_beams(AHEAD), 5.0, skins=True)
-        return {kernel.__name__: len(kernel.dispatcher.signatures) for kernel in kernels}
+        return {kernel.__name__: len(kernel.signatures) for kernel in kernels}
 
     first = compiled(1, -1)
     assert compiled(1, np.zeros(len(faces), dtype=int)) == first

@@ -9,7 +9,9 @@ no fast-math, and NumPy's rules for division.
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import gc
 import hashlib
 import importlib
 import os
@@ -17,9 +19,9 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast, overload
 
 import numpy as np
@@ -29,6 +31,8 @@ from .systems import user_cache_folder
 
 PACKAGE = Path(__file__).parents[1]
 STALE_DAYS = 30
+OBJECTS = 50_000
+"""New objects until garbage is collected while a kernel is compiled."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 prange = range
@@ -87,7 +91,21 @@ class Kernel:
 
     @functools.cached_property
     def dispatcher(self) -> Any:
-        """Dispatcher of numba, or the plain function with ``NUMBA_DISABLE_JIT``."""
+        """Dispatcher of numba for calls from Python, or the plain function with ``NUMBA_DISABLE_JIT``."""
+        return self._dispatcher(self.py_func)
+
+    @functools.cached_property
+    def _part(self) -> Any:
+        """Dispatcher for calls in other kernels, without the wrapper for Python: it costs as much as a small kernel.
+
+        The function has another name, since numba names the files of its cache by it.
+        """
+        whole: Any = self.py_func
+        part = FunctionType(whole.__code__, whole.__globals__, whole.__name__, whole.__defaults__, whole.__closure__)
+        part.__kwdefaults__, part.__qualname__ = whole.__kwdefaults__, f"{whole.__qualname__}.part"
+        return self._dispatcher(part, no_cpython_wrapper=True)
+
+    def _dispatcher(self, function: Callable[..., Any], no_cpython_wrapper: bool = False) -> Any:
         numba, settings = _load_numba()
         names = self.py_func.__globals__
         if names.get("prange") is prange:
@@ -97,7 +115,8 @@ class Kernel:
         settings.CACHE_DIR, caches._locator_classes = str(cache_folder()), [_PackageLocator, *locators]
         try:
             options = {"error_model": "numpy", "fastmath": False, "parallel": self._parallel}
-            dispatcher = numba.njit(cache=True, forceinline=self._inline, **options)(self.py_func)
+            wrappers = {"no_cpython_wrapper": no_cpython_wrapper, "no_cfunc_wrapper": True}  # nobody calls it from C
+            dispatcher = numba.njit(cache=True, forceinline=self._inline, **options, **wrappers)(function)
         finally:
             settings.CACHE_DIR, caches._locator_classes = before, locators
         if not settings.DISABLE_JIT:
@@ -121,6 +140,11 @@ class Kernel:
                 plain[k] = types.int64
         return resolve(tuple(plain), {name: types.unliteral(argument) for name, argument in kws.items()})
 
+    @property
+    def signatures(self) -> list[tuple[Any, ...]]:
+        """Types of arguments for which the function is compiled or loaded, in calls from Python and from kernels."""
+        return [*self.dispatcher.signatures, *self._part.signatures]
+
     @functools.cached_property
     def starts_threads(self) -> bool:
         """Whether the function or a kernel that it calls is parallel."""
@@ -130,7 +154,7 @@ class Kernel:
 
     @property
     def _numba_type_(self) -> Any:
-        return self.dispatcher._numba_type_
+        return self._part._numba_type_
 
 
 class _PackageLocator:
@@ -196,15 +220,56 @@ def _load_numba() -> tuple[Any, Any]:
     # For GNU OpenMP, whose idle threads spin: with another busy process, a step of 1 ms takes 50 ms (measured). The
     # variable is read when the first parallel kernel starts; a value set by the user is kept.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-    import numba
-    from numba.core import config
+    with _without_lock_events():
+        import numba
+        from numba.core import config
 
+    event: Any = importlib.import_module("numba.core.event")
+    event.Listener.register(_RareCollection)
+    event.register("numba:compile", _RareCollection())
     _import_array_functions()
 
     from .threading_layer import prefer_safe_layers
 
     prefer_safe_layers()
     return numba, config
+
+
+@contextlib.contextmanager
+def _without_lock_events() -> Iterator[None]:
+    """Let numba not count the time in each of 300 000 calls of LLVM, a twentieth of the time of a compilation.
+
+    Nothing here reads it; a program that has imported numba before keeps it.
+    """
+    ffi: Any = importlib.import_module("llvmlite.binding.ffi")
+    register = ffi.register_lock_callback
+    ffi.register_lock_callback = lambda *_: None
+    try:
+        yield
+    finally:
+        ffi.register_lock_callback = register
+
+
+class _RareCollection:
+    """Collects garbage seldom while kernels are compiled: a compiler makes many objects that live until its end.
+
+    The methods are those of ``numba.core.event.Listener``, which cannot be imported before numba.
+    """
+
+    def __init__(self) -> None:
+        self._depth, self._usual = 0, gc.get_threshold()
+
+    def notify(self, event: Any) -> None:
+        """Change how often garbage is collected when the first kernel begins, and back when it is compiled."""
+        if event.is_start:
+            if self._depth == 0:
+                self._usual = gc.get_threshold()
+                gc.set_threshold(max(self._usual[0], OBJECTS), *self._usual[1:])
+            self._depth += 1
+        elif event.is_end and self._depth > 0:
+            self._depth -= 1
+            if self._depth == 0:
+                gc.set_threshold(*self._usual)
 
 
 def _import_array_functions() -> None:

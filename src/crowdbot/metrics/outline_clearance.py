@@ -93,7 +93,8 @@ def outline_clearance(
     jump = JUMP * np.diff(times, prepend=-math.inf)
     sizes = np.broadcast_to(radius, active.shape)
     arrays = map(read_only, (jump, position, velocity, heading, sizes, active))
-    everything: Any = (*arrays, robot, read_only(outline), *result)
+    corner = np.array(outline, dtype=np.float64)  # can be written, as where the world measures: compiled once
+    everything: Any = (*arrays, robot, corner, *result)
     _measure(*everything)
     return result
 

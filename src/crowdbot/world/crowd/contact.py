@@ -75,7 +75,7 @@ def _sweep_range(
             x = position[e, a, 0]
             key[a] = x if (seen[e, a] or asking[e, a]) and math.isfinite(x) else math.inf
             longest = max(longest, reach[e, a])
-        order = np.argsort(key)
+        order = np.argsort(key, kind="mergesort")  # the sort that the sensors have compiled, too
         for i in range(A):
             a = order[i]
             for j in range(i + 1, A):
