@@ -130,7 +130,7 @@ def test_an_id_of_kitti_that_is_no_whole_number(tmp_path: Path) -> None:
 def person(path: Path, id: int, names: str = "frame,id,x,y,type") -> None:
     """Write a table of one person who walks."""
     rows = "".join(f"{k},{id},{0.05 * k + id},{id},ped\n" for k in STEPS)
-    path.write_text(f"{names}\n{rows}")
+    path.write_text(f"{names}\n{rows}", encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
-from .agent_rows import AgentRows
 from .attachments import AttachedFile, SkippedAttachmentWarning, named_files, write_trial_files
 from .episode_branch import branch
 from .episode_export import READING_TABLES, export, folder_of
@@ -10,6 +9,7 @@ from .episode_replay import Replay, replay
 from .episode_writer import Recorder
 from .keyframes import KeyframeWarning, keyframe_ticks
 from .metadata import as_json, versions
+from .recorded_rows import RecordedRows
 from .recorded_run import episode_path, open_run, record, run
 from .recorded_simulation import EpisodeRerun, RecordedSimulation, open_rerun
 from .robot_messages import LinkFrames
@@ -18,12 +18,12 @@ from .step_records import RecordedStep
 
 __all__ = [
     "READING_TABLES",
-    "AgentRows",
     "AttachedFile",
     "EpisodeRerun",
     "KeyframeWarning",
     "LinkFrames",
     "RecordedEpisode",
+    "RecordedRows",
     "RecordedSimulation",
     "RecordedStep",
     "Recorder",

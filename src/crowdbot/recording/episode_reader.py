@@ -24,9 +24,9 @@ from crowdbot.simulation import Order, RunFailure, ScanRow, read_order, tracks_o
 from crowdbot.trials import floor_plan_of_xml
 from crowdbot.typing import Floats
 
-from .agent_rows import AgentRows, RobotRow
 from .episode_repair import EpisodeEnd
 from .metadata import ADDED_ROBOTS, END_KEYS, ENDING, FORMAT, KEYS, METADATA, from_json
+from .recorded_rows import RecordedRows, RobotRow
 from .step_records import (
     RecordedContact,
     RecordedSequence,
@@ -74,7 +74,7 @@ class RecordedEpisode:
     path: Path
     metadata: Mapping[str, str]
     complete: bool
-    rows: AgentRows
+    rows: RecordedRows
     robots: tuple[int, ...]
     commands: Floats
     scans_by_topic: Mapping[str, RecordedSequence[ScanRow]]
@@ -101,7 +101,7 @@ class RecordedEpisode:
         """Positions ``[T, A, 2]`` [m], 0 for absent agents.
 
         Raises:
-            EpisodeError: the array is too large, see :meth:`AgentRows.dense`.
+            EpisodeError: the array is too large, see :meth:`RecordedRows.dense`.
         """
         return self.rows.dense(self.rows.position)
 
@@ -246,7 +246,7 @@ class _TracksView:
 
 
 class _PositionsOfRows:
-    def __init__(self, rows: AgentRows) -> None:
+    def __init__(self, rows: RecordedRows) -> None:
         self._rows = rows
         self._keys = np.repeat(np.arange(len(rows.times)), np.diff(rows.starts)) * rows.count + rows.ids
 
@@ -395,7 +395,7 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         machines.append([_robot_row(places[r], robot, moment.robots[name]) for r, robot, name in present])
         for r, _, name in present:  # others are added later, or removed
             commands[k, r] = moment.commands[name]
-    rows = AgentRows.of([people for _, people in due], machines, count, [moment.reactions for moment, _ in due])
+    rows = RecordedRows.of([people for _, people in due], machines, count, [moment.reactions for moment, _ in due])
     scans, readings = _places(moment.scans for moment in found), _places(moment.readings for moment in found)
     if "added_robots" in known:
         known = known | {"robots": json.dumps(robots)}
@@ -427,7 +427,7 @@ def _robot_row(id: int, robot: Mapping[str, Any], state: RobotState) -> RobotRow
 
 
 def _people_table(
-    rows: AgentRows, robots: Sequence[TableRobot], impacts: Sequence[PersonImpact] | None
+    rows: RecordedRows, robots: Sequence[TableRobot], impacts: Sequence[PersonImpact] | None
 ) -> dict[str, NDArray[Any]]:
     """Return the table of people, made of as many people at a time as fit in arrays with a column for each of them."""
     machines = np.array(sorted(robot.id for robot in robots), dtype=np.int64)

@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core import Scene
 from crowdbot.humans import FallPose, blend_fall_poses
-from crowdbot.recording import AgentRows, RecordedEpisode
+from crowdbot.recording import RecordedEpisode, RecordedRows
 from crowdbot.sensors import Reading
 from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
 from crowdbot.typing import Floats, Ints
@@ -49,7 +49,7 @@ def simulation_reason(simulation: Simulation, episode: RecordedEpisode, changes:
     )
 
 
-def recorded_slots(first: Ints, rows: AgentRows) -> Ints | None:
+def recorded_slots(first: Ints, rows: RecordedRows) -> Ints | None:
     """Return the row in a scene of each id of an episode; None if the scene has too few rows.
 
     Somebody who enters, or comes out of a portal, takes the row of somebody who has left: the one who left at the same
@@ -63,7 +63,7 @@ def recorded_slots(first: Ints, rows: AgentRows) -> Ints | None:
     >>> present = [np.array(ids) for ids in ([0, 1], [0, 2], [2, 3])]
     >>> still = np.zeros((2, 2))
     >>> states = [AgentStates(0.1 * k, ids, still, still, still[0], still[0]) for k, ids in enumerate(present)]
-    >>> recorded_slots(np.array([0, 1]), AgentRows.of(states, [[], [], []], 4)).tolist()
+    >>> recorded_slots(np.array([0, 1]), RecordedRows.of(states, [[], [], []], 4)).tolist()
     [0, 1, 1, 0]
     """
     slots = np.full(len(rows.every), -1, dtype=np.int64)

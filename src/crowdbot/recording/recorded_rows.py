@@ -1,4 +1,4 @@
-"""AgentRows: recorded states of people and robots, one row for each agent at each time at which it is present."""
+"""RecordedRows: recorded states of people and robots, one row for each agent at each time at which it is present."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RobotRow(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class AgentRows:
+class RecordedRows:
     """States of people and robots by time: M rows, one for each agent at each of the T times at which it is present.
 
     The memory grows with what was recorded, also where each arrival gets a new id.
@@ -47,7 +47,7 @@ class AgentRows:
         reactions: codes of the reactions to robots ``[M]``; None if nobody can react.
 
     >>> here = AgentStates(0.0, np.array([4]), np.ones((1, 2)), np.zeros((1, 2)), np.zeros(1), np.array([0.3]))
-    >>> rows = AgentRows.of([here, here], [[RobotRow(2, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0)], []], 5)
+    >>> rows = RecordedRows.of([here, here], [[RobotRow(2, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0)], []], 5)
     >>> rows.ids.tolist(), rows.starts.tolist(), rows.present().tolist()
     ([2, 4, 4], [0, 2, 3], [2, 4])
     >>> rows.log([2, 4]).active.tolist()
@@ -71,7 +71,7 @@ class AgentRows:
         robots: Sequence[Sequence[RobotRow]],
         count: int,
         reactions: Sequence[Mapping[str, Sequence[int]] | None] = (),
-    ) -> AgentRows:
+    ) -> RecordedRows:
         """Return the rows of people and robots at T times.
 
         Args:
@@ -84,8 +84,10 @@ class AgentRows:
             ValueError: an id is below 0, not below ``count``, or twice at one time.
         """
         machines = np.array([row for present in robots for row in present], dtype=np.float64).reshape(-1, 7)
-        step = np.concatenate([_steps([len(one.ids) for one in people]), _steps([len(present) for present in robots])])
-        ids = np.concatenate([*(one.ids for one in people), machines[:, 0].astype(np.int64)])
+        step = np.concatenate(
+            [_steps([len(states.ids) for states in people]), _steps([len(present) for present in robots])]
+        )
+        ids = np.concatenate([*(states.ids for states in people), machines[:, 0].astype(np.int64)])
         order = np.lexsort((ids, step))
         step, ids = step[order], ids[order]
         if len(ids) and (ids.min() < 0 or ids.max() >= count):
@@ -97,13 +99,13 @@ class AgentRows:
         starts = np.searchsorted(step, np.arange(len(people) + 1))
         known = bool(reactions) and all(one is not None for one in reactions)
         return cls(
-            np.array([one.time for one in people], dtype=np.float64),
+            np.array([states.time for states in people], dtype=np.float64),
             starts,
             ids,
-            np.concatenate([*(one.position for one in people), machines[:, 2:4]])[order],
-            np.concatenate([*(one.velocity for one in people), machines[:, 5:7]])[order],
-            np.concatenate([*(one.heading for one in people), machines[:, 4]])[order],
-            np.concatenate([*(one.radius for one in people), machines[:, 1]])[order],
+            np.concatenate([*(states.position for states in people), machines[:, 2:4]])[order],
+            np.concatenate([*(states.velocity for states in people), machines[:, 5:7]])[order],
+            np.concatenate([*(states.heading for states in people), machines[:, 4]])[order],
+            np.concatenate([*(states.radius for states in people), machines[:, 1]])[order],
             count,
             _codes(starts, ids, reactions) if known else None,
         )
@@ -175,7 +177,7 @@ class AgentRows:
             EpisodeError: the array is too large, see :data:`DENSE_CELLS`.
 
         >>> here = AgentStates(0.0, np.array([4]), np.ones((1, 2)), np.zeros((1, 2)), np.zeros(1), np.array([0.3]))
-        >>> rows = AgentRows.of([here], [[]], 5)
+        >>> rows = RecordedRows.of([here], [[]], 5)
         >>> rows.dense(rows.radius).tolist()
         [[0.0, 0.0, 0.0, 0.0, 0.3]]
         """

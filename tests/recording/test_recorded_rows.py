@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core import EpisodeError
 from crowdbot.metrics import AgentStates, TableRobot, people_table
-from crowdbot.recording import AgentRows, RecordedEpisode, agent_rows, episode_reader, read_episode, record, run
+from crowdbot.recording import RecordedEpisode, RecordedRows, episode_reader, read_episode, record, recorded_rows, run
 from crowdbot.simulation import log_of, tracks_of
 from crowdbot.trials import Trial, parse_trial
 from crowdbot.world import REACTIONS
@@ -96,7 +96,7 @@ def test_tracks_come_from_the_rows(episode: RecordedEpisode) -> None:
 
 
 def test_arrays_that_would_be_too_large_are_refused(episode: RecordedEpisode, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(agent_rows, "DENSE_CELLS", 1000)
+    monkeypatch.setattr(recorded_rows, "DENSE_CELLS", 1000)
     fresh = dataclasses.replace(episode)
     with pytest.raises(EpisodeError, match=r"401 times and \d+ ids are too many .* may be 1000: use the rows by time"):
         _ = fresh.position
@@ -123,13 +123,13 @@ def test_impossible_ids_are_refused(ids: list[int], said: str) -> None:
     place = np.zeros((2, 2))
     states = AgentStates(0.0, np.array(ids), place, place, place[0], place[0])
     with pytest.raises(ValueError, match=said):
-        AgentRows.of([states], [[]], 5)
+        RecordedRows.of([states], [[]], 5)
 
 
 def test_somebody_absent_cannot_react() -> None:
     states = AgentStates(0.0, np.array([3]), np.zeros((1, 2)), np.zeros((1, 2)), np.zeros(1), np.zeros(1))
     with pytest.raises(ValueError, match="absent"):
-        AgentRows.of([states], [[]], 5, [{"curious": [4]}])
-    codes = AgentRows.of([states], [[]], 5, [{"curious": [3]}]).reactions
+        RecordedRows.of([states], [[]], 5, [{"curious": [4]}])
+    codes = RecordedRows.of([states], [[]], 5, [{"curious": [3]}]).reactions
     assert codes is not None
     assert REACTIONS[codes[0]] == "curious"
