@@ -23,6 +23,9 @@ class Windows:
     def show(self, frame):
         self.frames = [*self.frames[-50:], frame]
 
+    def discard(self, channel):
+        self.frames = [frame for frame in self.frames if frame.channel != channel]
+
     def is_ready(self, channel=None):
         return self.is_open
 

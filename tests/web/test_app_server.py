@@ -64,6 +64,13 @@ class Counter(Desk):
             time.sleep(0.001)
 
     @command
+    def turn_over(self) -> None:
+        """Show more frames than a window gets at once, then something else."""
+        self.burst(CREDIT + 1)
+        self.session.discard("count")
+        self.session.tell("counter.turned", {})
+
+    @command
     def hang(self) -> None:
         self.hangs.set()
         self.goes_on.wait(180)
@@ -212,6 +219,25 @@ def test_a_slow_window_gets_the_newest_frame_and_never_more_than_its_credit(tmp_
     frames, last = serve(tmp_path, talk)
     assert len(frames) <= CREDIT
     assert last.arrays["n"].tolist() == [199]
+
+
+@pytest.mark.live
+def test_a_frame_that_waits_never_comes_after_the_event_of_what_is_shown_next(tmp_path):
+    async def talk(server, client):
+        async with window(server, client) as (socket, _):
+            await socket.send_json({"id": 1, "call": "counter.turn_over", "args": {}})
+            frames = []
+            while (message := await socket.receive()).type == aiohttp.WSMsgType.BINARY or "turned" not in message.data:
+                frames += [StateFrame.decode(message.data)] if message.type == aiohttp.WSMsgType.BINARY else []
+            await socket.send_json({"drawn": CREDIT})
+            await socket.send_json({"id": 2, "call": "counter.burst", "args": {"count": 1}})
+            while (message := await socket.receive()).type != aiohttp.WSMsgType.BINARY:
+                pass
+            return [int(frame.arrays["n"][0]) for frame in frames], StateFrame.decode(message.data)
+
+    before, after = serve(tmp_path, talk)
+    assert len(before) <= CREDIT
+    assert (after.sequence, int(after.arrays["n"][0])) == (len(before) + 1, 0)
 
 
 @pytest.mark.live

@@ -28,6 +28,9 @@ class Viewer(Protocol):
     def show(self, frame: StateFrame) -> None:
         """Send a state frame."""
 
+    def discard(self, channel: str) -> None:
+        """Forget a frame of a channel that has not been sent."""
+
     def is_ready(self, channel: str | None = None) -> bool:
         """Return whether the window shows a channel, or any, and has drawn what was sent."""
 
@@ -122,6 +125,12 @@ class AppSession:
         if not waits:
             self._do(self._send_latest)
 
+    def discard(self, channel: str) -> None:
+        """Forget a frame of a channel that no window has got yet, from any thread."""
+        with self._lock:
+            self._latest.pop(channel, None)
+        self._do(lambda: self._discard(channel))
+
     def is_ready(self, channel: str | None = None) -> bool:
         """Return whether a window could take a frame of a channel, or of any, now; from any thread."""
         return any(window.is_ready(channel) for window in tuple(self.windows))
@@ -129,6 +138,10 @@ class AppSession:
     def _tell_windows(self, event: str, data: Any) -> None:
         for window in self.windows:
             window.tell(event, data)
+
+    def _discard(self, channel: str) -> None:
+        for window in self.windows:
+            window.discard(channel)
 
     def _send_latest(self) -> None:
         with self._lock:

@@ -31,6 +31,12 @@ class DeskWindows(Protocol):
     def show(self, frame: StateFrame) -> None:
         """Send a state frame to all windows, from any thread; a slow window gets the newest of each channel."""
 
+    def discard(self, channel: str) -> None:
+        """Forget a frame of a channel that no window has got yet, since what it shows is over. From any thread.
+
+        Events that are sent afterwards then never come before a frame of what was shown before.
+        """
+
     def is_ready(self, channel: str | None = None) -> bool:
         """Return whether a window could take a frame of a channel, or of any, now. From any thread.
 

@@ -62,6 +62,10 @@ class Window:
             self._frames[frame.channel] = frame
             self._wake.set()
 
+    def discard(self, channel: str) -> None:
+        """Forget a frame of a channel that waits."""
+        self._frames.pop(channel, None)
+
     def wants(self, channel: str) -> bool:
         """Return whether the window shows a channel; a page that is hidden shows none."""
         return self._wants is None or channel in self._wants

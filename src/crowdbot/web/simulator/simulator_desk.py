@@ -374,6 +374,7 @@ class SimulatorDesk(Desk):
                 player.loop.speed = old.loop.speed
                 old.close(0.0)
             self._history.clear()
+            self.session.discard("scene")  # a frame of the run before would hide the preview of this one
             self.session.tell("simulator.opened", {"source": source, "status": player.status()})
             player.start()
 

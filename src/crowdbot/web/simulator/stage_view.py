@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from dataclasses import replace
 from typing import Any
@@ -22,6 +23,7 @@ from crowdbot.web.scene import (
     scene_description,
     scene_revision,
 )
+from crowdbot.web.state_frame import StateFrame
 from crowdbot.world import PeopleMotion, worlds_of
 
 from .camera_feed import CameraFeed
@@ -62,6 +64,7 @@ class StageView:
         self._seconds = 0.0
         self._shown = self._told = 0.0
         self._closed, self._cost, self._owed = False, 0.0, False
+        self._sending = threading.Lock()
         self._rate: tuple[float, float] | None = None
         self.predictor = predictor or ConstantVelocity()
         """Predictor of the layer ``paths``."""
@@ -101,7 +104,8 @@ class StageView:
 
     def close(self) -> None:
         """Send nothing more: the windows show something else. Called from any thread."""
-        self._closed = True
+        with self._sending:
+            self._closed = True
 
     def description(self) -> dict[str, Any]:
         """Return what stands still."""
@@ -143,9 +147,14 @@ class StageView:
         begin = time.thread_time()
         frame = instant_frame(self._instant(self._simulation), layers)
         stamp = {"stamp": np.array([time.monotonic()])}  # headsets tell when they have drawn it
-        self.session.show(replace(frame, channel=self.channel, arrays={**frame.arrays, **stamp}))
         self._cost = time.thread_time() - begin
-        return True
+        return self._send(replace(frame, channel=self.channel, arrays={**frame.arrays, **stamp}))
+
+    def _send(self, frame: StateFrame) -> bool:
+        with self._sending:  # nothing after close()
+            if not self._closed:
+                self.session.show(frame)
+            return not self._closed
 
     def _offer_images(self, simulation: Simulation) -> None:
         if self._cameras is None or not self._cameras.chosen:
