@@ -1,9 +1,9 @@
 """Ranges of the crowd models: every model has one, and a trial beyond it gets one sentence for each limit."""
 
 from crowdbot import models
-from crowdbot.core import builtin_classes, kebab_case
-from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel, Mixture
-from crowdbot.trials import MODEL_RANGES, Crowds, model_range, parse_trial, trial_remarks
+from crowdbot.core import builtin_classes
+from crowdbot.models import ORCA, CrowdModel, Mixture, with_headway
+from crowdbot.trials import parse_trial, trial_remarks
 
 TEXT = """<trial name="hall" duration="5" step="{step}" substeps="{substeps}">
   <stage walkable="0,0 20,0 20,5 0,5"/>
@@ -18,13 +18,14 @@ def remarks(model, step="0.05", substeps="1", count="20"):
 
 
 def test_every_builtin_model_has_a_range_with_sources():
-    built_in = {*builtin_classes(models, CrowdModel)} - {kebab_case(Mixture.__name__)}
-    assert built_in <= {item.model for item in MODEL_RANGES}
-    assert len({item.model for item in MODEL_RANGES}) == len(MODEL_RANGES)
-    for item in MODEL_RANGES:
-        assert item.max_density > 0.0
-        assert item.max_step > 0.0
-        assert all((item.why, item.density_source, item.step_source))
+    kinds = [kind for kind in builtin_classes(models, CrowdModel).values() if kind is not Mixture]
+    for kind in kinds:
+        bounds = kind.valid_range
+        assert bounds is not None, kind
+        assert bounds.max_density > 0.0
+        assert bounds.max_step > 0.0
+        assert all((bounds.why, bounds.density_source, bounds.step_source))
+    assert len(kinds) >= 20
 
 
 def test_a_trial_within_the_range_has_no_remark():
@@ -45,14 +46,27 @@ def test_a_dense_trial_is_named_with_what_happens():
     assert sentence.startswith("crowd model orca is used at 1 people/m2, beyond its range of 0.7: no fundamental")
 
 
-def test_crowds_and_own_models():
-    crowds = Crowds((ORCA(), CollisionFreeSpeed()), names=("a", "b"))
-    assert [model_range(model).model for model in crowds.models] == ["orca", "collision-free-speed"]
-
+def test_an_own_model_with_the_name_of_a_builtin_one_has_no_range():
     class Orca(ORCA):
         """Own model with the name of a built-in one."""
 
-    assert model_range(Orca()) is None
+    assert Orca().valid_range is None
+    assert with_headway(ORCA)().valid_range is None
+
+
+CROWDS = """<crowd name="a" type="orca" time-horizon="uniform(1, 3)"/>
+  <crowd name="b" type="orca"/>
+  <crowd name="c" type="collision-free-speed"/>"""
+
+
+def test_each_model_of_several_crowds_is_named_once():
+    text = TEXT.format(model="orca", step="0.4", substeps="1", count="5").replace('<crowd type="orca"/>', CROWDS)
+    text = text.replace("<spawner", '<recording period="0.4"/><spawner crowd="a"')
+    found = trial_remarks(parse_trial(text, place="hall.xml"))
+    assert [sentence.split(" is used")[0] for sentence in found] == [
+        "crowd model orca",
+        "crowd model collision-free-speed",
+    ]
 
 
 def test_both_limits_are_separate_sentences():

@@ -44,6 +44,7 @@ from .model_parameter import (
 )
 from .output_lock import lock_output, release_stale_lock
 from .plugins.class_source import UnreadableValue, reads_only, unread_fields, without_running_code
+from .plugins.own_attributes import reset_undeclared
 from .plugins.plugin import (
     attribute_names,
     attribute_problems,
@@ -188,6 +189,7 @@ __all__ = [
     "relative_name",
     "release_stale_lock",
     "required_fields",
+    "reset_undeclared",
     "run_saved_jobs",
     "some",
     "source_digest",

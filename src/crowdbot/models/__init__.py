@@ -19,6 +19,7 @@ from .speed_models.anticipation_velocity import AnticipationVelocity
 from .speed_models.collision_free_speed import CollisionFreeSpeed
 from .speed_models.collision_free_speed_v3 import CollisionFreeSpeedV3
 from .speed_models.optimal_steps import OptimalSteps
+from .valid_range import ModelRange
 from .velocity_obstacles.orca import ORCA
 from .velocity_obstacles.pledestrians import PLEdestrians
 from .velocity_obstacles.vog import VOG
@@ -48,6 +49,7 @@ __all__ = [
     "HeadwayLayer",
     "Heuristics",
     "Mixture",
+    "ModelRange",
     "OptimalSteps",
     "PLEdestrians",
     "People",

@@ -35,6 +35,12 @@ def check_model(model: CrowdModel) -> None:
     velocity = _check_velocity(model, scene)
     if not np.array_equal(_check_velocity(model, scene), velocity):
         raise InputError(f"{name}.velocity is not deterministic: the same scene and generator give new velocities")
+    draws = _draws(model, scene)
+    if draws and model.is_batched:
+        raise InputError(
+            f"{name} declares batched = True, but draws random numbers; environments that are computed together share"
+            " the generator, so leave batched out"
+        )
     moved = scene.external & scene.active
     if not np.array_equal(velocity[moved], scene.velocity[moved]):
         raise InputError(f"{name}.velocity changes external agents; they must keep their velocity")
@@ -43,13 +49,14 @@ def check_model(model: CrowdModel) -> None:
     before = _example_scene()
     if not np.array_equal(scene.position, before.position) or not np.array_equal(scene.velocity, before.velocity):
         raise InputError(f"{name}.velocity changes the scene; it must only read it")
-    whole = model.velocity(scene, DT)
-    for e in range(scene.shape[0]):
-        if not np.array_equal(model.velocity(scene.environments([e]), DT)[0], whole[e]):
+    whole = model.velocity(scene, DT, stream(1, "contract"))
+    for e in range(0 if draws else scene.shape[0]):  # who draws is called for each environment
+        if not np.array_equal(model.velocity(scene.environments([e]), DT, stream(1, "contract"))[0], whole[e]):
             raise InputError(f"{name}.velocity of environment {e} differs when it is computed alone")
     single = Scene.of([[0.0, 0.0]], goal=[[9.0, 0.0]])
+    rng = stream(1, "contract")
     for _ in range(20):
-        single = model.step(single, DT)
+        single = model.step(single, DT, rng)
     if not np.all(np.isfinite(single.position)):
         raise InputError(f"{name}: the position of a single person is not finite after 20 steps")
 
@@ -106,6 +113,13 @@ def _check_velocity(model: CrowdModel, scene: Scene) -> Floats:
     if not np.all(np.isfinite(velocity)):
         raise InputError(f"{name}.velocity returned values that are not finite")
     return velocity
+
+
+def _draws(model: CrowdModel, scene: Scene) -> bool:
+    """Return whether a model draws random numbers."""
+    rng, untouched = stream(1, "contract"), stream(1, "contract")
+    model.velocity(scene, DT, rng)
+    return bool(rng.bit_generator.state != untouched.bit_generator.state)
 
 
 def _example_scene() -> Scene:

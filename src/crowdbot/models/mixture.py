@@ -56,6 +56,10 @@ class Mixture(CrowdModel):
     models: tuple[CrowdModel, ...]
     which: int | Sequence[int] | Ints = 0
 
+    @property
+    def is_batched(self) -> bool:
+        return all(model.is_batched for model in self.models)
+
     def __post_init__(self) -> None:
         super().__post_init__()
         if not isinstance(self.models, tuple) or not self.models:

@@ -21,11 +21,13 @@ from crowdbot.core import (
     check_parameters,
     did_you_mean,
     per_agent,
+    reset_undeclared,
 )
 from crowdbot.core.neighbors import nearest
 from crowdbot.typing import Bools, Floats
 
 from .agent_rows import LARGEST, StepStart, begin_step, speed_limit
+from .valid_range import ModelRange
 
 __all__ = [
     "CrowdModel",
@@ -50,6 +52,12 @@ class CrowdModel(abc.ABC):
     all agents or an array that broadcasts to ``[E, A]``. Results are reproducible bit for bit from scene, time step and
     random stream; they do not depend on the batch or the number of threads.
 
+    Class attributes, which a subclass does not inherit:
+        batched: whether the model draws no random numbers, so that one call for E environments gives what a call for
+            each would give. Otherwise a world of several environments calls it once for each of them.
+        valid_range: density and time step that the model is made for, None if they are not known; ``crowdbot check``
+            names trials beyond it.
+
     Raises:
         InputError: a parameter is not finite, below its minimum or above 1e9.
 
@@ -64,6 +72,12 @@ class CrowdModel(abc.ABC):
     """
 
     paper: ClassVar[Paper]
+    batched: ClassVar[bool] = False
+    valid_range: ClassVar[ModelRange | None] = None
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        reset_undeclared(cls, batched=False, valid_range=None)
 
     def __post_init__(self) -> None:
         check_parameters(self, LARGEST)
@@ -83,6 +97,11 @@ class CrowdModel(abc.ABC):
     def memory_at_start(self) -> Mapping[str, float]:
         """Initial values in ``Scene.memory`` for a new agent, by name; empty for models without memory."""
         return {}
+
+    @property
+    def is_batched(self) -> bool:
+        """Whether one call may compute several environments: as the class declares, or as all its parts do."""
+        return type(self).batched
 
     @property
     def is_individual(self) -> bool:

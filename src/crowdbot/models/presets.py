@@ -16,9 +16,13 @@ from crowdbot.core import kebab_case
 from .headway.layer import HeadwayLayer, arguments_of, copy_field, make_class
 from .model import CrowdModel
 from .speed_models.collision_free_speed import CollisionFreeSpeed
+from .valid_range import ModelRange
 
 BASES: dict[str, type[CrowdModel]] = {"collision-free-speed": CollisionFreeSpeed}
 """Models that a preset file may name."""
+DENSITY = "Walking speed and density in the documentation"
+RANGES = {"people": ModelRange(2.0, "narrow two-way corridors are slower than in experiments", 0.05, DENSITY, DENSITY)}
+"""Ranges of the presets."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +88,7 @@ def _preset_class(name: str) -> type[CrowdModel]:
         f"{preset.about}\n\nPreset of {preset.model} with the headway layer. {preset.method}\n\n"
         f"Args:\n{arguments_of(HeadwayLayer)}\n{arguments_of(kind)}"
     )
-    made = make_class(preset.name, fields, kind, doc)
+    made = make_class(preset.name, fields, kind, doc, RANGES.get(name))
     made.__module__ = __name__
     return made
 

@@ -33,6 +33,7 @@ class ExternalNavigator(Navigator):
     """
 
     source: ClassVar[str] = ""
+    always_returns = True
     """Address ``module:function`` of what opens the source of its orders in a run; empty: the caller gives one."""
 
     timeout: float = 0.5

@@ -51,6 +51,8 @@ class FollowerNavigator(Navigator):
     0.8
     """
 
+    always_returns = True
+
     distance: float = 0.0
     gain: float = 1.5
     feedforward: float = 1.0

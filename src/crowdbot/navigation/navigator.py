@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from crowdbot.core import InputError, Twist
+from crowdbot.core import InputError, Twist, reset_undeclared
 from crowdbot.typing import Bools, Floats
 
 from .action import Action
@@ -53,6 +53,12 @@ class Navigator(ABC):
 
     needs_scan: ClassVar[bool] = False
     """Whether the navigator knows its surroundings from scans only; a robot without a planar scanner is refused."""
+    always_returns: ClassVar[bool] = False
+    """Whether every decision returns soon, so that no limit of real time watches it. A subclass does not inherit it."""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        reset_undeclared(cls, always_returns=False)
 
     def begin(self, observation: Observation) -> Any:
         """Return the memory before the first decision; None without memory."""

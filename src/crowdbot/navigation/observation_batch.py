@@ -342,7 +342,7 @@ def forecast_tracks(
 
     Args:
         tracks: the histories.
-        predictor: the predictor; a built-in one predicts histories with equally many rows in one call.
+        predictor: the predictor; a ``batched`` one predicts histories with equally many rows in one call.
         seconds: time to predict [s].
         steps: time between rows of each [s], None: between its two newest rows.
         walls: walls of the stage.
@@ -360,8 +360,7 @@ def forecast_tracks(
         raise InputError(f"forecast: the time steps differ, from {min(past.dt for past in pasts):g} s; give dt")
     groups: dict[tuple[float, int], list[int]] = {}
     for k, past in enumerate(pasts):
-        together = type(predictor).__module__.startswith("crowdbot.prediction.")
-        groups.setdefault((past.dt, past.position.shape[1]) if together else (float(k), -1), []).append(k)
+        groups.setdefault((past.dt, past.position.shape[1]) if predictor.batched else (float(k), -1), []).append(k)
     found: dict[int, Forecast] = {}
     for rows in groups.values():
         part = _predict(

@@ -68,6 +68,7 @@ class ORCANavigator(Navigator):
     """
 
     paper: ClassVar[Paper] = models.ORCA.paper
+    always_returns = True
 
     speed: float = 1.0
     safety: float = 0.05

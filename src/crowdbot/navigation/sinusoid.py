@@ -53,6 +53,8 @@ class SinusoidNavigator(Navigator):
     0.0123
     """
 
+    always_returns = True
+
     amplitude: float = 0.5
     period: float = 8.0
     cycles: int = 6

@@ -40,6 +40,8 @@ class Straight(Navigator):
     0.995
     """
 
+    always_returns = True
+
     speed: float = 1.0
 
     def __post_init__(self) -> None:

@@ -49,6 +49,7 @@ class ConstantVelocity(Predictor):
     displacements: int = 1
 
     paper: ClassVar[Paper] = SCHOLLER
+    batched = True
 
     def __post_init__(self) -> None:
         if self.displacements < 1:
@@ -81,6 +82,8 @@ class LeastSquares(Predictor):
     [7.5, 10.0]
     """
 
+    batched = True
+
     anchored: bool = False
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
@@ -106,6 +109,8 @@ class ConstantAcceleration(Predictor):
     Two observed rows give constant velocity, one row a constant position. Deterministic: K = 1. Inaccurate on tracks
     with a time step of 0.4 s; included for comparison.
     """
+
+    batched = True
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         self.check(past, steps, samples)
@@ -135,6 +140,7 @@ class SampledConstantVelocity(Predictor):
     displacements: int = 1
 
     paper: ClassVar[Paper] = SCHOLLER
+    batched = True
 
     def __post_init__(self) -> None:
         for name in ("heading_sd", "speed_sd"):

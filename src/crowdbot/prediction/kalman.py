@@ -168,6 +168,7 @@ class Kalman(_Filter):
 
     lowest: ClassVar[Mapping[str, float]] = {"acceleration": 1e-4, "measurement": 1e-4, "speed": 1e-2}
     first_guess: ClassVar[Mapping[str, float]] = {"acceleration": 0.3, "measurement": 0.02, "speed": 1.0}
+    batched = True
 
     @property
     def _push(self) -> float:
@@ -213,6 +214,7 @@ class KalmanAcceleration(_Filter):
 
     lowest: ClassVar[Mapping[str, float]] = {"jerk": 1e-4, "measurement": 1e-4, "speed": 1e-2, "acceleration": 1e-3}
     first_guess: ClassVar[Mapping[str, float]] = {"jerk": 0.3, "measurement": 0.02, "speed": 1.0, "acceleration": 0.3}
+    batched = True
 
     @property
     def _push(self) -> float:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, kebab_case, stream
+from crowdbot.core import InputError, kebab_case, reset_undeclared, stream
 from crowdbot.data import Forecast, Windows
 
 if TYPE_CHECKING:
@@ -41,6 +41,13 @@ class Predictor(ABC):
 
     history: ClassVar[float] = 0.0
     """Observed seconds that the predictor reads; 0: it reads all rows, whatever their time step."""
+    batched: ClassVar[bool] = False
+    """Whether windows of several robots and environments may be predicted in one call, with the random stream of each
+    from :func:`window_streams`. A subclass does not inherit it."""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        reset_undeclared(cls, batched=False)
 
     @property
     def name(self) -> str:

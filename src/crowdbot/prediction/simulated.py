@@ -71,6 +71,8 @@ class Simulated(Predictor):
     [[9.5, 0.0]]
     """
 
+    batched = True
+
     model: CrowdModel | str = field(default_factory=ORCA)
     goal: Goal | str = field(default_factory=CurrentDirection)
     cost: Cost | str | None = None

@@ -32,6 +32,8 @@ class StoredForecasts(Predictor):
             forecasts of every recording.
     """
 
+    batched = True
+
     file: str
     digest: str = dataclasses.field(default="", repr=False)
     recordings: tuple[tuple[str, str, str], ...] = dataclasses.field(default=(), repr=False)

@@ -57,6 +57,8 @@ class Bumper(Sensor):
     [[True, False, False, False]]
     """
 
+    batched = True
+
     radius: float = 0.3
     sectors: int = 8
     first: float = -math.pi / 8

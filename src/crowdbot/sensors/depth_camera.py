@@ -85,6 +85,7 @@ class DepthCamera(Sensor):
     """
 
     spatial: ClassVar[bool] = True
+    batched = True
     width: int = 160
     height: int = 120
     field_of_view: float = math.radians(87.0)

@@ -74,6 +74,7 @@ class GroundTruthPeople(Sensor):
     visible_only: bool = True
     rays: int = 1440
     truth: ClassVar[bool] = True
+    batched = True
 
     def __post_init__(self) -> None:
         super().__post_init__()

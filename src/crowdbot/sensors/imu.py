@@ -81,6 +81,8 @@ class IMU(Sensor):
     [[0.0, 0.0, 9.80665]]
     """
 
+    batched = True
+
     acceleration_noise: float = 0.0
     turn_noise: float = 0.0
     acceleration_walk: float = 0.0

@@ -333,6 +333,8 @@ class Lidar2D(Ranging):
     ([[inf, inf, 2.5, inf]], [[-1, -1, 1, -1]])
     """
 
+    batched = True
+
     rays: int = 360
     field_of_view: float = TURN
     range_min: float = 0.05

@@ -88,6 +88,7 @@ class Lidar3D(Ranging):
     """
 
     spatial: ClassVar[bool] = True
+    batched = True
     elevations: tuple[float, ...] = SIXTEEN_RINGS
     columns: int = 900
     azimuth_from: float = -math.pi

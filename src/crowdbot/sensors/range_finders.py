@@ -92,6 +92,8 @@ class Infrared(RangeFinder):
     [0.7]
     """
 
+    batched = True
+
     dispersion: float = math.radians(0.5)
     rays: int = 100
     range_min: float = 0.05
@@ -157,6 +159,8 @@ class Ultrasound(RangeFinder):
     >>> Ultrasound().read(scene, Pose.of((0.0, 0.0), 0.0).to_spatial(0.5)).ranges.tolist()
     [1.7]
     """
+
+    batched = True
 
     radius: float = 0.5
     rays: int = 400

@@ -113,6 +113,8 @@ class ExposedCamera(RGBCamera):
     (1, 30, 40, 3)
     """
 
+    batched = True
+
     exposure: float = 0.0
     blur_images: int = 4
     readout: float = 0.0
@@ -264,6 +266,8 @@ class PulsedLidar2D(Lidar2D):
     >>> float(scan.ranges[0, 180].round(3)), scan.beam_time[[0, -1]].round(4).tolist()
     (2.704, [-0.0997, 0.0])
     """
+
+    batched = True
 
     scan_time: float = 0.0
     beam_width: float = 0.0

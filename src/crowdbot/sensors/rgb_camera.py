@@ -98,6 +98,7 @@ class RGBCamera(Sensor):
 
     spatial: ClassVar[bool] = True
     renders: ClassVar[bool] = True
+    batched = True
     width: int = 320
     height: int = 240
     field_of_view: float = math.radians(60.0)

@@ -20,6 +20,7 @@ from crowdbot.core import (
     SpatialPose,
     TickSchedule,
     check_number,
+    reset_undeclared,
     storable,
     tree,
     whole_ticks,
@@ -113,6 +114,8 @@ class Sensor(ABC):
         renders: whether the sensor needs a renderer for its usual images. Rendering is slow and needs graphics.
         encoders: whether the sensor reads the wheels of its robot, ``view.wheels``.
         truth: whether its readings are the truth, which no sensor of a real robot gives.
+        batched: whether one call measures E environments of the plane, each from the row of its own of ``rng`` and
+            of a state ``[E, ...]``. Otherwise each environment is measured alone. A subclass does not inherit it.
 
     >>> @dataclass(frozen=True, kw_only=True)
     ... class Counter(Sensor):
@@ -133,6 +136,11 @@ class Sensor(ABC):
     renders: ClassVar[bool] = False
     encoders: ClassVar[bool] = False
     truth: ClassVar[bool] = False
+    batched: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        reset_undeclared(cls, batched=False)
 
     def __post_init__(self) -> None:
         check_number(type(self).__name__, "rate", self.rate, "Hz", min=1e-6)

@@ -171,6 +171,7 @@ class WheelOdometry(Sensor):
     """
 
     encoders: ClassVar[bool] = True
+    batched = True
 
     track: float | None = None
     wheel_radius: float | None = None

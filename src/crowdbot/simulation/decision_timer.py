@@ -37,7 +37,7 @@ class DecisionTimer:
     """Real time of the decisions of one robot in E environments.
 
     A decision that takes longer than the deadline is missed, one that takes longer than the limit of the robot fails.
-    The code of crowdbot itself has no limit. A replay measures nothing.
+    A navigator that declares that it always returns has no limit. A replay measures nothing.
 
     Fields:
         missed: ``[E]`` tick of the latest decision that took longer than the deadline, -1 for none.
@@ -155,8 +155,8 @@ class DecisionTimer:
         return all(self.recorded[e] is not None for e in environments)
 
     def _limit(self, robot: RobotSpec, environments: Ints) -> float | None:
-        """Return the limit of real time [s]; None for the code of crowdbot and in a replay."""
-        if _is_own(type(robot.navigator)) and robot.predictor is None:
+        """Return the limit of real time [s]; None for a navigator that always returns and in a replay."""
+        if robot.navigator.always_returns and robot.predictor is None:
             return None
         return None if self._is_replay(environments) else robot.decision_limit
 
@@ -172,14 +172,11 @@ def decision_times(controls: Iterable[Any], environment: int = 0) -> dict[str, t
     return {name: times for name, times in found.items() if times}
 
 
-def _is_own(kind: type) -> bool:
-    return kind.__module__.startswith("crowdbot.")
-
-
 @functools.cache
-def _decides_alone(kind: type[Navigator]) -> bool:
-    """Return whether the ``decide_batch`` of a navigator is code of crowdbot."""
-    return _is_own(next(base for base in kind.__mro__ if "decide_batch" in vars(base)))
+def _keeps_limit(kind: type[Navigator]) -> bool:
+    """Return whether the ``decide_batch`` of a navigator keeps the limit itself, or always returns."""
+    owner = next(base for base in kind.__mro__ if "decide_batch" in vars(base))
+    return owner is Navigator or (issubclass(owner, Navigator) and owner.always_returns)
 
 
 def _decide(
@@ -191,7 +188,7 @@ def _decide(
     clock: Callable[[], float] | None,
 ) -> Decisions:
     """Return the decisions of a navigator; one with a ``decide_batch`` of its own has the limit for all of them."""
-    if _decides_alone(type(navigator)):
+    if _keeps_limit(type(navigator)):
         return navigator.decide_batch(batch, memories, name, clock, limit)
     try:
         decide = functools.partial(navigator.decide_batch, batch, memories, name, clock)

@@ -364,14 +364,13 @@ def mounted_sensors(
     for mount in robot.sensors:
         sensor = mount.sensor
         space = spatial(robot, mount, bodies)
-        own = type(sensor).__module__.startswith("crowdbot.sensors.")
         probe = MountedSensor(
             dataclasses.replace(mount, sensor=sensor.with_skins()) if skins else mount,
             robot.sensor_pose(mount),
             robot.schedule(mount, world.clock),
             RandomStreams(seeds, "sensor", robot.name, mount.name),
             space,
-            own and not space and not sensor.renders and not world.has_own_walls,
+            sensor.batched and not space and not sensor.renders and not world.has_own_walls,
             None,
             wheels=wheel_geometry(robot.body) if sensor.encoders else None,
             keeps_people=any(getattr(spec.fault, "sensor", None) in ("", mount.name) for spec in robot.faults),

@@ -144,9 +144,6 @@ if TYPE_CHECKING:
     from .trial import EndCondition as EndCondition
     from .trial import RecordingSpec as RecordingSpec
     from .trial import Trial as Trial
-    from .validation.rates import MODEL_RANGES as MODEL_RANGES
-    from .validation.rates import ModelRange as ModelRange
-    from .validation.rates import model_range as model_range
     from .validation.rates import trial_remarks as trial_remarks
     from .validation.trial_checks import robot_place_problem as robot_place_problem
     from .variants import apply_values as apply_values

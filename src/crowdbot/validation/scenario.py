@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.models import CrowdModel
-from crowdbot.trials import model_range
 from crowdbot.typing import Bools, Floats
 
 RADIUS = 0.2
@@ -102,7 +101,7 @@ def substeps(model: CrowdModel) -> int:
     >>> substeps(ORCA()), substeps(CollisionFreeSpeed())
     (1, 5)
     """
-    known = model_range(model)
+    known = model.valid_range
     return 1 if known is None else max(1, math.ceil(STEP / known.max_step - 1e-9))
 
 

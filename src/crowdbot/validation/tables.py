@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.models import crowd_presets
-from crowdbot.trials import MODEL_RANGES
+from crowdbot import models
+from crowdbot.core import builtin_classes
+from crowdbot.models import CrowdModel, crowd_presets
 
 from . import bottleneck, lanes
 from .rimea import ISO_CASES, RIMEA_CASES, Case
@@ -107,18 +108,18 @@ def _people(people: dict[str, Any], name: str) -> str:
 
 def ability_table(done: Validation) -> list[str]:
     """Return the table of what each model can and cannot do, with its range."""
-    ranges = {item.model: item for item in MODEL_RANGES}
+    kinds: Any = builtin_classes(models, CrowdModel)
     lines = [
         "## What each model can and cannot do",
         "",
-        "Range: density up to which a model walks like people, and time step that it is made for, from the table that"
-        " `crowdbot check` uses. Can and cannot: tests passed and failed, with the further cases of the guidelines.",
+        "Range: density up to which a model walks like people, and time step that it is made for, as `crowdbot check`"
+        " tells. Can and cannot: tests passed and failed, with the further cases of the guidelines.",
         "",
         "| model | density [1/m2] | time step [s] | can | cannot |",
         "|---|---|---|---|---|",
     ]
     for model, checks in done.outcomes.items():
-        known = ranges.get(model)
+        known = kinds[model].valid_range if model in kinds else None
         limits = f"{known.max_density:g} | {known.max_step:g}" if known else "- | -"
         run = [check for check in (*CHECKS, *FURTHER) if checks[check.name].starts]
         can = ", ".join(c.title for c in run if checks[c.name].verdict.passed)

@@ -45,7 +45,6 @@ from .crowd.environment_rows import (
     pad_ids,
     resize_scene,
     with_common_time,
-    works_in_batches,
 )
 from .crowd.ghosts import hide_ghosts, show_ghosts
 from .crowd.journey import JOURNEY, JourneyAssignment
@@ -410,7 +409,7 @@ class PlanarWorld(World):
 
     def _step_model(self, scene: Scene, dt: float) -> Scene:
         models = self._models or (self.model,)
-        whole = len(models) == 1 or (self.joined and works_in_batches(self.model))
+        whole = len(models) == 1 or (self.joined and self.model.is_batched)
         return step_models(scene, dt, models, self._rngs, self.model if whole else None)
 
     def _finish_motion(self, earlier: Scene, after: Scene) -> Scene:
@@ -779,7 +778,7 @@ class PlanarWorld(World):
         kept = {name: getattr(self, name) for name in ("scene", "_previous", "contacts")}
         twists, delayed, tick = dict(self.twists), dict(self._delayed), self.clock.tick
         ids, following = self._traffic.ids.copy(), self._traffic.following.copy()
-        rngs = None if works_in_batches(self.model) else tree.take(self._rngs, slice(None))
+        rngs = None if self.model.is_batched else tree.take(self._rngs, slice(None))
 
         def undo() -> None:
             self._rngs = rngs or self._rngs

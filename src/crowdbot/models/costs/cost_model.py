@@ -10,6 +10,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
 from crowdbot.models.model import CrowdModel, begin_step, neighbors_of, rows, speed_limit
+from crowdbot.models.valid_range import FREE, PAGE, UMANS, ModelRange
 from crowdbot.typing import Floats
 
 from .cost_terms import HalfPlanes
@@ -77,6 +78,8 @@ class CostModel(CrowdModel):
         "Symposium on Interactive 3D Graphics and Games",
         "10.1145/3384382.3384532",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.1, PAGE, UMANS)
 
     costs: VelocityCost = field(default_factory=HalfPlanes)
     optimiser: str = "natural"

@@ -14,6 +14,7 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import CrowdModel, begin_step, check_variant, launch, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.models.valid_range import FREE, PAGE, ModelRange
 from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
@@ -262,6 +263,8 @@ class Boids(CrowdModel):
         "Craig W. Reynolds", 1987, "Flocks, herds and schools: a distributed behavioral model", "SIGGRAPH",
         "10.1145/37401.37406",
     )  # fmt: skip
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.1, PAGE, "CrowdBot simulator")
 
     goal_gain: PerAgent = parameter(3.5, unit="1/s", low=1.0, high=8.0, source="CrowdBot simulator, measured")
     look_ahead: PerAgent = parameter(

@@ -25,6 +25,7 @@ from crowdbot.core import (
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import CrowdModel, begin_step, check_variant, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.models.valid_range import FREE, PAGE, ModelRange
 from crowdbot.typing import Floats
 
 from .wall_surfaces import surface_distance, wall_surfaces
@@ -236,6 +237,8 @@ class EscapePanic(CrowdModel):
         "Nature 407, 487-490",
         "10.1038/35035023",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.1, PAGE, "the model divides longer steps into substeps of 0.01 s")
 
     strength: PerAgent = parameter(2000.0, unit="N", low=100.0, high=4000.0, source="Helbing et al. 2000")
     distance: PerAgent = parameter(0.08, unit="m", low=0.03, high=0.4, source="Helbing et al. 2000", min=1e-3)

@@ -13,6 +13,7 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import is_hidden, nearest_on_segment, within
+from crowdbot.models.valid_range import JUPEDSIM, PAGE, ModelRange
 from crowdbot.typing import Floats
 
 CONTACT = 0.5
@@ -236,6 +237,8 @@ class GeneralizedCentrifugalForce(CrowdModel):
         "Physical Review E 82, 046111",
         "10.1103/PhysRevE.82.046111",
     )
+    batched = True
+    valid_range = ModelRange(0.1, "a one-way crowd of 0.25 people/m2 walks at 0.7 m/s", 0.01, PAGE, JUPEDSIM)
 
     strength: PerAgent = parameter(0.3, unit="1", low=0.05, high=1.0, source="JuPedSim 1.4.2")
     wall_strength: PerAgent = parameter(0.2, unit="1", low=0.05, high=1.0, source="JuPedSim 1.4.2")

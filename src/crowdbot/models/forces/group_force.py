@@ -13,6 +13,7 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import CrowdModel, begin_step, check_variant, launch, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.models.valid_range import FREE, PAGE, ModelRange
 from crowdbot.typing import Floats, Ints
 
 from .wall_surfaces import surface_distance, wall_surfaces
@@ -346,6 +347,8 @@ class GroupForce(CrowdModel):
         "PLoS ONE 5(4), e10047",
         "10.1371/journal.pone.0010047",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.1, PAGE, "PySocialForce tests")
 
     strength: PerAgent = parameter(5.1, unit="m/s^2", low=1.0, high=10.0, source="PySocialForce 1.1.2")
     anticipation: PerAgent = parameter(2.0, unit="s/m", low=0.5, high=4.0, source="Moussaïd et al. 2009")

@@ -22,6 +22,7 @@ from crowdbot.models.model import (
     speed_limit,
 )
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.models.valid_range import FREE, PAGE, ModelRange
 from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, surface_distance, wall_surfaces
@@ -206,6 +207,8 @@ class HeadedSocialForce(CrowdModel):
         "PLoS ONE 12(1), e0169734",
         "10.1371/journal.pone.0169734",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.02, PAGE, "contact forces of an explicit step")
 
     strength: PerAgent = parameter(2000.0, unit="N", low=100.0, high=4000.0, source="Helbing et al. 2000")
     distance: PerAgent = parameter(0.08, unit="m", low=0.03, high=0.4, source="Helbing et al. 2000", min=1e-3)

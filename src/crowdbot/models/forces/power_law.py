@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.models.valid_range import JAMS, TWO_WAY, UMANS, ModelRange
 from crowdbot.typing import Floats
 
 from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
@@ -182,6 +183,8 @@ class PowerLaw(CrowdModel):
         "Physical Review Letters 113, 238701",
         "10.1103/PhysRevLett.113.238701",
     )
+    batched = True
+    valid_range = ModelRange(0.5, JAMS, 0.1, TWO_WAY, UMANS)
 
     strength: PerAgent = parameter(1.5, unit="m^2 s^(m-2)", low=0.3, high=5.0, source="Karamouzas et al. 2014")
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")

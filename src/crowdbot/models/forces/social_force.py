@@ -13,6 +13,7 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import CrowdModel, begin_step, check_variant, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import limit_length, parameter_rows
+from crowdbot.models.valid_range import TWO_WAY, UMANS, ModelRange
 from crowdbot.typing import Floats
 
 VARIANTS = ("gradient", "umans2018")
@@ -216,6 +217,8 @@ class SocialForce(CrowdModel):
         "Physical Review E",
         "10.1103/PhysRevE.51.4282",
     )
+    batched = True
+    valid_range = ModelRange(0.5, "lanes do not form and people are pushed through walls", 0.1, TWO_WAY, UMANS)
 
     strength: PerAgent = parameter(2.1, unit="m^2/s^2", low=0.5, high=8.0, source="paper, V0")
     distance: PerAgent = parameter(0.3, unit="m", low=0.1, high=1.0, source="paper, sigma", min=0.01)

@@ -21,6 +21,7 @@ from crowdbot.models.agent_rows import begin_rows
 from crowdbot.models.mixture import Mixture
 from crowdbot.models.model import CrowdModel, begin_step, launch, rows
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.models.valid_range import ModelRange
 from crowdbot.typing import Floats
 
 from .robot_avoidance import AVOIDANCE, avoid_robots, avoid_robots_part, robots_in
@@ -236,7 +237,13 @@ def with_headway(kind: type[CrowdModel]) -> type[CrowdModel]:
     return make_class(name, fields, kind, _description(kind))
 
 
-def make_class(name: str, fields: Sequence[tuple[str, Any, Any]], kind: type[CrowdModel], doc: str) -> type[CrowdModel]:
+def make_class(
+    name: str,
+    fields: Sequence[tuple[str, Any, Any]],
+    kind: type[CrowdModel],
+    doc: str,
+    valid_range: ModelRange | None = None,
+) -> type[CrowdModel]:
     """Return a class with the headway layer on a model.
 
     Args:
@@ -244,10 +251,11 @@ def make_class(name: str, fields: Sequence[tuple[str, Any, Any]], kind: type[Cro
         fields: name, type and ``dataclasses.Field`` of every parameter of the model, and of the layer if it differs.
         kind: class of the model.
         doc: docstring.
+        valid_range: density and time step that the class is made for, None if they are not known.
     """
     space = {"base": kind, "paper": getattr(kind, "paper", None), "__doc__": doc, "_unread_fields": unread_fields(kind)}
+    space |= {"batched": kind.batched, "valid_range": valid_range}
     made = dataclasses.make_dataclass(name, fields, bases=(HeadwayLayer,), namespace=space, frozen=True, kw_only=True)
-    # the module of the model: the world asks it whether one call may step several environments
     made.__module__ = kind.__module__
     return made
 

@@ -13,6 +13,7 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.models.valid_range import JAMS, JUPEDSIM, TWO_WAY, ModelRange
 from crowdbot.typing import Floats
 
 from .collision_free_speed import is_hidden, way_to, within
@@ -207,6 +208,8 @@ class AnticipationVelocity(CrowdModel):
         "Transportation Research Part C",
         "10.1016/j.trc.2021.103464",
     )
+    batched = True
+    valid_range = ModelRange(0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM)
 
     strength: PerAgent = parameter(8.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
     range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", min=1e-3)

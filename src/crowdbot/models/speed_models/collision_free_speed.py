@@ -14,6 +14,7 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.agent_rows import LIMIT, RADIUS, WISH_X, WISH_Y, X, Y, begin_rows
 from crowdbot.models.model import CrowdModel, launch, rows
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.models.valid_range import JAMS, JUPEDSIM, PAGE, ModelRange
 from crowdbot.typing import Bools, Floats
 
 __all__ = ["CollisionFreeSpeed", "is_hidden", "nearest_on_segment", "push_by_walls", "way_to", "within"]
@@ -199,6 +200,8 @@ class CollisionFreeSpeed(CrowdModel):
         "Traffic and Granular Flow '15",
         "10.1007/978-3-319-33482-0_29",
     )
+    batched = True
+    valid_range = ModelRange(3.0, JAMS, 0.01, PAGE, JUPEDSIM)
 
     strength: PerAgent = parameter(8.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
     range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", min=1e-3)

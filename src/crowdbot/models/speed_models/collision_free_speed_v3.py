@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.models.model import CrowdModel, begin_step, launch, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.models.valid_range import JAMS, JUPEDSIM, TWO_WAY, ModelRange
 from crowdbot.typing import Floats
 
 from .collision_free_speed import is_hidden, push_by_walls, way_to, within
@@ -172,6 +173,8 @@ class CollisionFreeSpeedV3(CrowdModel):
         "Traffic and Granular Flow '15",
         "10.1007/978-3-319-33482-0_29",
     )
+    batched = True
+    valid_range = ModelRange(0.5, JAMS, 0.01, TWO_WAY, JUPEDSIM)
 
     max_turn: PerAgent = parameter(1.57, unit="rad", low=0.2, high=3.0, source="JuPedSim 1.4.2", max=math.pi)
     range_ahead: PerAgent = parameter(2.0, unit="m", low=0.2, high=5.0, source="JuPedSim 1.4.2, 20 times 0.1", min=1e-3)

@@ -15,6 +15,7 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import CrowdModel, begin_step, launch, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.models.valid_range import PAGE, ModelRange
 from crowdbot.typing import Bools, Floats
 
 from .collision_free_speed import is_hidden, within
@@ -265,6 +266,8 @@ class OptimalSteps(CrowdModel):
         "Physical Review E 86, 046108",
         "10.1103/PhysRevE.86.046108",
     )
+    batched = True
+    valid_range = ModelRange(2.0, "bodies overlap within steps", 0.1, PAGE, "about a sixth of the time of a step")
 
     personal_space: PerAgent = parameter(1.2, unit="m", low=0.4, high=2.0, source="Vadere", min=1e-3)
     intimate_space: PerAgent = parameter(0.45, unit="m", low=0.1, high=0.8, source="Vadere", min=1e-3)

@@ -26,6 +26,7 @@ from crowdbot.models.agent_rows import (
 )
 from crowdbot.models.model import CrowdModel, launch
 from crowdbot.models.parameter_rows import parameter_rows
+from crowdbot.models.valid_range import FREE, PAGE, ModelRange
 from crowdbot.typing import Bools, Floats, Rows
 
 from .linear_program import best_velocity, clip_speed
@@ -189,6 +190,8 @@ class ORCA(CrowdModel):
         "Robotics Research (ISRR)",
         "10.1007/978-3-642-19457-3_1",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.25, PAGE, "RVO2, time step of its examples")
 
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="RVO2, pedestrian settings")
     max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")

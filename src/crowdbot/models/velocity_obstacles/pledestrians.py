@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.models.valid_range import FREE, PAGE, UMANS, ModelRange
 from crowdbot.typing import Floats
 
 from .linear_program import best_velocity
@@ -154,6 +155,8 @@ class PLEdestrians(CrowdModel):
         "Eurographics/ACM SIGGRAPH Symposium on Computer Animation",
         "10.2312/SCA/SCA10/119-128",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.1, PAGE, UMANS)
 
     planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", min=SHORTEST)
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="RVO2, pedestrian settings")

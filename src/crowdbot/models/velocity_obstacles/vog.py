@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.models.model import CrowdModel, begin_step, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.models.valid_range import FREE, PAGE, ModelRange
 from crowdbot.typing import Floats, Ints
 
 from .vog_cost import CONE, DIRECTED, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
@@ -338,6 +339,8 @@ class VOG(CrowdModel):
         "Computer Graphics Forum 36(8)",
         "10.1111/cgf.12993",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.1, PAGE, "CrowdBot simulator")
 
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="CrowdBot simulator")
     max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")

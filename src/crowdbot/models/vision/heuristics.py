@@ -13,6 +13,7 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segment
 from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.models.valid_range import JAMS, TWO_WAY, UMANS, ModelRange
 from crowdbot.typing import Floats, Ints
 
 ANGLES = 61
@@ -231,6 +232,8 @@ class Heuristics(CrowdModel):
         "PNAS",
         "10.1073/pnas.1016507108",
     )
+    batched = True
+    valid_range = ModelRange(0.5, JAMS, 0.1, TWO_WAY, UMANS)
 
     field_of_view: PerAgent = parameter(
         math.radians(75.0), unit="rad", low=0.5, high=math.pi / 2, source="Moussaid et al. 2011, 75 degrees"

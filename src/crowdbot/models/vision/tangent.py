@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.models.model import CrowdModel, begin_step, neighbors_of, rows, speed_limit
+from crowdbot.models.valid_range import JAMS, TWO_WAY, ModelRange
 from crowdbot.typing import Floats
 
 from .tangent_threats import MOST, RETREAT, THREAT, insert, least_change, retreat, threat_of_neighbor, threat_of_wall
@@ -163,6 +164,8 @@ class Tangent(CrowdModel):
         "Symposium on Computer Animation (SCA)",
         "10.1145/1599470.1599495",
     )
+    batched = True
+    valid_range = ModelRange(0.5, JAMS, 0.1, TWO_WAY, "CrowdBot simulator")
 
     personal_area: PerAgent = parameter(0.33, unit="m", low=0.15, high=0.6, source="CrowdBot simulator")
     direction_error: PerAgent = parameter(0.5, unit="1", low=0.0, high=1.0, source="CrowdBot simulator (g_beta)")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, InputError, Neighbors, Paper, PerAgent, Scene, kernel, parameter, prange
 from crowdbot.models.model import CrowdModel, begin_step, check_variant, movable, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
+from crowdbot.models.valid_range import JAMS, TWO_WAY, ModelRange
 from crowdbot.typing import Floats
 
 from .vbm_slopes import FAN, FIELD, STEEP, STILL, desire_slopes, look_at_walls, mean_slopes, sum_slopes
@@ -155,6 +156,8 @@ class VBM(CrowdModel):
         "Computer Graphics Forum 36(2)",
         "10.1111/cgf.13130",
     )
+    batched = True
+    valid_range = ModelRange(0.25, JAMS, 0.1, TWO_WAY, "CrowdBot simulator")
 
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="CrowdBot simulator")
     max_neighbors: PerAgent = parameter(32.0, unit="1", low=4.0, high=64.0, source="half of 5 m at 0.8 people/m2")

@@ -14,6 +14,7 @@ from crowdbot.core import CHUNK, InputError, Neighbors, Paper, PerAgent, Scene, 
 from crowdbot.models.model import CrowdModel, begin_step, launch, neighbors_of, rows, speed_limit
 from crowdbot.models.parameter_rows import parameter_columns
 from crowdbot.models.speed_models.collision_free_speed import nearest_on_segment
+from crowdbot.models.valid_range import FREE, JUPEDSIM, PAGE, ModelRange
 from crowdbot.typing import Floats
 
 SAMPLES = 20
@@ -268,6 +269,8 @@ class WarpDriver(CrowdModel):
         "ACM Transactions on Graphics 35(6)",
         "10.1145/2980179.2982442",
     )
+    batched = True
+    valid_range = ModelRange(0.7, FREE, 0.01, PAGE, JUPEDSIM)
 
     time_horizon: PerAgent = parameter(2.0, unit="s", low=0.5, high=8.0, source="JuPedSim 1.4.2", min=1e-2)
     step_size: PerAgent = parameter(0.5, unit="m^2", low=0.05, high=2.0, source="JuPedSim 1.4.2")

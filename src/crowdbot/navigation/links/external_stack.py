@@ -40,6 +40,7 @@ class RosbridgeNavigator(ExternalNavigator):
     """
 
     source: ClassVar[str] = SOURCE
+    always_returns = True
 
     command: str = ""
     port: int = 0
@@ -78,6 +79,7 @@ class Ros2Navigator(ExternalNavigator):
     """
 
     source: ClassVar[str] = SOURCE
+    always_returns = True
 
     command: str = ""
     domain: int = -1

@@ -220,6 +220,7 @@ class AttentionPolicyNavigator(LearnedNavigator):
         "ICRA",
         "10.1109/ICRA.2019.8794134",
     )
+    always_returns = True
 
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         inputs, shares = attention_inputs(batch, asking, self.speed), np.zeros((len(batch), 2))

@@ -70,6 +70,7 @@ class RDSNavigator(Navigator):
         "IEEE Robotics and Automation Letters 6",
         "10.1109/LRA.2021.3068660",
     )
+    always_returns = True
 
     speed: float = 1.0
     horizon: float = 3.0

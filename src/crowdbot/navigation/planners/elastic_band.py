@@ -70,6 +70,7 @@ class TimeElasticBandNavigator(Navigator):
         "Robotics and Autonomous Systems 88",
         "10.1016/j.robot.2016.11.007",
     )
+    always_returns = True
 
     speed: float = 1.0
     horizon: float = 4.0

@@ -202,6 +202,7 @@ class PolicyNavigator(LearnedNavigator):
     paper: ClassVar[Paper] = Paper(
         "Schulman et al.", 2017, "Proximal policy optimization algorithms", "arXiv", "10.48550/arXiv.1707.06347"
     )
+    always_returns = True
 
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         inputs, shares = policy_inputs(batch, MOST_PEOPLE, asking, self.speed), np.zeros((len(batch), 2))

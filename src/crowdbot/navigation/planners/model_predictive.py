@@ -107,6 +107,8 @@ class MPCNavigator(Navigator):
     True
     """
 
+    always_returns = True
+
     speed: float = 1.0
     horizon: float = 4.0
     risk: float = 20.0

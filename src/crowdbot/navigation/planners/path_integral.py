@@ -170,6 +170,7 @@ class MPPINavigator(Navigator):
         "IEEE Transactions on Robotics 34(6)",
         "10.1109/TRO.2018.2865891",
     )
+    always_returns = True
 
     speed: float = 1.0
     horizon: float = 4.0

@@ -58,6 +58,7 @@ class PotentialFieldNavigator(Navigator):
         "Int. J. Robotics Research 5",
         "10.1177/027836498600500106",
     )
+    always_returns = True
 
     speed: float = 1.0
     damping: float = 2.0

@@ -62,6 +62,7 @@ class PredictedOccupancyNavigator(Navigator):
     """
 
     needs_scan: ClassVar[bool] = True
+    always_returns = True
 
     speed: float = 1.0
     horizon: float = 3.0

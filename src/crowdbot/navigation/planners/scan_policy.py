@@ -205,6 +205,7 @@ class ScanPolicyNavigator(Navigator):
         "10.1109/ICRA.2018.8461113",
     )
     needs_scan: ClassVar[bool] = True
+    always_returns = True
 
     speed: float = 1.0
     horizon: float = 0.5

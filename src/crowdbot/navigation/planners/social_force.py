@@ -68,6 +68,7 @@ class SocialForceNavigator(Navigator):
         "Phys. Rev. E 51",
         "10.1103/PhysRevE.51.4282",
     )
+    always_returns = True
 
     speed: float = 1.0
     relaxation: float = 0.5

@@ -66,6 +66,7 @@ class DynamicWindowNavigator(Navigator):
         "IEEE Robotics & Automation Magazine 4",
         "10.1109/100.580977",
     )
+    always_returns = True
 
     speed: float = 1.0
     heading: float = 0.8

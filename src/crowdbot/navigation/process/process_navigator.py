@@ -47,6 +47,8 @@ class ProcessNavigator(Navigator):
     'mine.py:Mine'
     """
 
+    always_returns = True
+
     address: str = ""
     command: str = ""
     parameters: str = ""

@@ -175,6 +175,8 @@ def _obstacles(observation: Observation) -> tuple[Floats, Floats]:
 class _SafeNavigator(Navigator):
     """A navigator behind a safety layer."""
 
+    always_returns = True
+
     inner: Navigator
     layer: SafetyLayer
 

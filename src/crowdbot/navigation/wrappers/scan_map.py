@@ -61,6 +61,7 @@ max_neighbors=15, reaction=0.3)
     """
 
     needs_scan: ClassVar[bool] = True
+    always_returns = True
 
     speed: float = 1.0
     planner: str = "dynamic-window"

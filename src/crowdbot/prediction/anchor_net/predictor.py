@@ -142,6 +142,7 @@ class AnchorNet(Predictor):
 
     paper: ClassVar[Paper] = CHAI
     history: ClassVar[float] = HISTORY
+    batched = True
 
     def __post_init__(self) -> None:
         check_fold(self.fold)

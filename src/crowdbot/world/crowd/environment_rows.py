@@ -22,16 +22,6 @@ Delayed = dict[int, tuple[tuple[Pending, ...], Twist | Twists]]
 """Pending commands and command in force of robots, by agent."""
 
 
-def works_in_batches(model: CrowdModel) -> bool:
-    """Return whether one call of a model for several environments equals one call for each.
-
-    Built-in models draw no random numbers. Others may draw some or have state, and are called per environment.
-    """
-    if isinstance(model, Mixture):
-        return all(works_in_batches(item) for item in model.models)
-    return type(model).__module__.startswith("crowdbot.models.")
-
-
 def stack_scenes(scenes: Sequence[Scene]) -> Scene:
     """Join scenes with the walls and bodies of the first; those with fewer agents are padded.
 
