@@ -33,6 +33,7 @@ def test_tables_and_requirements_are_printed(capsys: pytest.CaptureFixture[str])
     assert re.search(r"straight +yes +3 +0 \[0, 0\.708\]", text)
     assert "6 runs in" in text
     assert "comparison with straight" in text
+    assert re.search(r"frontal +orca +success-rate \[share\] ", text)
     assert "collision-rate<0.9@90%: holds for frontal, orca: collision-rate is 0 in 3 runs" in text
 
 

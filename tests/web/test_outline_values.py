@@ -52,3 +52,15 @@ def test_a_drawing_shows_the_outline(robot: Robot) -> None:
     assert drawing.count("<circle") == 1
     longest = max(re.findall(r'<path d="([^"]*)"', drawing), key=len)
     assert longest.count(",") == len(robot.outline) + 1
+
+
+def test_a_robot_that_is_passed_has_its_name(robot: Robot, tmp_path: Path) -> None:
+    y = robot.half_width + robot.radius + 0.1
+    two = TEXT.format(wall=-3.0, x=-4.0, y=0.0).replace('<goal x="0" y="0"/>', '<goal x="4" y="0"/>')
+    second = (
+        f'<robot name="second" type="cuybot" x="0" y="{y}"><goal x="4" y="{y}"/><navigator type="straight"/></robot>'
+    )
+    two = two.replace("</trial>", f"{second}</trial>")
+    record(parse_trial(two), 0, tmp_path / "e.mcap")
+    passes = [event.about for event in episode_events(read_episode(tmp_path / "e.mcap")) if event.kind == "near miss"]
+    assert [about.split(" at ")[0] for about in passes] == ["robot 1 passes robot 2", "robot 2 passes robot 1"]

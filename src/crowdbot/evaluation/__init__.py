@@ -101,7 +101,7 @@ if TYPE_CHECKING:
     from .scan_prediction.scan_scores import score_scans as score_scans
     from .statistic import Statistic as Statistic
     from .statistic import check_metrics as check_metrics
-    from .statistic import metric_unit as metric_unit
+    from .statistic import metric_title as metric_title
     from .statistic import parse_statistic as parse_statistic
     from .sweep_effects import FactorEffect as FactorEffect
     from .sweep_effects import factor_effects as factor_effects

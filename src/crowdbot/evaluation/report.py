@@ -18,7 +18,7 @@ from .pareto import pareto_svg
 from .realism import load_clearances, realism_notice
 from .requirement import Requirement
 from .result import CellResult, EvaluationResult
-from .statistic import Statistic, metric_unit
+from .statistic import Statistic, metric_title
 from .sweep_effects import FactorEffect, factor_effects
 from .verdict import judge_cell
 from .worst_run import WorstRun, not_dangerous, person_contacts
@@ -308,7 +308,7 @@ def _requirements(result: EvaluationResult, requirements: Sequence[Requirement])
 
 def _comparisons(comparisons: Sequence[PairedComparison]) -> str:
     rows = [
-        [comparison.trial, comparison.robot or "-", _with_unit(comparison.metric), comparison.first,
+        [comparison.trial, comparison.robot or "-", metric_title(comparison.metric), comparison.first,
          comparison.second, str(comparison.difference), _p_value(comparison.p_value), _p_value(comparison.corrected)]
         for comparison in comparisons
         if not math.isnan(comparison.p_value)
@@ -332,16 +332,11 @@ def _effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> str:
         for effect in factor_effects(result, metric):
             groups.setdefault((effect.trial, effect.method, effect.robot), []).append(effect)
         for names, rows in groups.items():
-            title = html.escape(f"{_with_unit(metric)}: {', '.join(filter(None, names))}")
+            title = html.escape(f"{metric_title(metric)}: {', '.join(filter(None, names))}")
             cells = [(" and ".join(row.factors), ", ".join(row.levels), str(row.mean), str(row.effect)) for row in rows]
             parts.append(f"<h3>{title}</h3>{effects_svg(rows)}")
             parts.append(_table(["factor", "level", "mean", "effect"], cells))
     return "".join(parts)
-
-
-def _with_unit(metric: str) -> str:
-    unit = metric_unit(metric)
-    return f"{metric.replace('_', ' ')} [{unit}]" if unit else metric.replace("_", " ")
 
 
 def _p_value(value: float) -> str:

@@ -113,6 +113,16 @@ def parse_statistic(name: str, metrics: Mapping[str, object] | None = None) -> S
     return Statistic(name, metric, kind)
 
 
+def metric_title(metric: str) -> str:
+    """Return the name and the unit of a metric over runs, as the head of its column: a share of runs, or its mean.
+
+    >>> metric_title("person_collision"), metric_title("time_to_goal")
+    ('person-collision-rate [share]', 'time-to-goal [s]')
+    """
+    rate = next((name for name, item in RATES.items() if item == metric), None)
+    return Statistic(rate or metric.replace("_", "-"), metric, "rate" if rate else "mean").title
+
+
 def check_metrics(statistics: Iterable[Statistic]) -> None:
     """Check that the metrics of statistics exist, before any run.
 

@@ -77,15 +77,10 @@ def _head(statistic: Statistic) -> str:
     return "\n".join([*textwrap.wrap(name, 10, break_long_words=False), *([f"[{unit}"] if unit else [])])
 
 
-def _metric_title(metric: str) -> str:
-    from crowdbot.evaluation import metric_unit
-
-    unit = metric_unit(metric)
-    return metric.replace("_", " ") + (f" [{unit}]" if unit else "")
-
-
 def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComparison]) -> None:
     """Print the comparisons of each navigator with the first one."""
+    from crowdbot.evaluation import metric_title
+
     first = result.cells[0].method
     robots = len({cell.robot for cell in result.cells}) > 1
     rows = [
@@ -93,7 +88,7 @@ def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComp
             comparison.trial,
             comparison.second,
             *([comparison.robot or "own"] if robots else []),
-            _metric_title(comparison.metric),
+            metric_title(comparison.metric),
             str(comparison.difference),
             _p_value(comparison.corrected),
         ]
@@ -108,7 +103,7 @@ def print_comparisons(result: EvaluationResult, comparisons: Sequence[PairedComp
 
 def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> None:
     """Print the main effects of the factors of a sweep, and the interactions whose interval is clear of 0."""
-    from crowdbot.evaluation import factor_effects
+    from crowdbot.evaluation import factor_effects, metric_title
 
     if not any(cell.factors for cell in result.cells):
         return
@@ -127,7 +122,7 @@ def print_effects(result: EvaluationResult, statistics: Sequence[Statistic]) -> 
             if len(effect.factors) == 1 or effect.effect.low > 0.0 or effect.effect.high < 0.0
         ]
         head = ("trial", "navigator", "factor", "level", "mean", "effect")
-        print_table(f"effects on {_metric_title(metric)}", head, rows, caption, words=4)
+        print_table(f"effects on {metric_title(metric)}", head, rows, caption, words=4)
 
 
 def print_verdicts(verdicts: Sequence[tuple[CellResult, Requirement, RequirementVerdict]]) -> None:

@@ -17,6 +17,7 @@ from crowdbot.evaluation import (
     EvaluationResult,
     PairedComparison,
     load_evaluation,
+    metric_title,
     parse_statistic,
     remark_lines,
 )
@@ -150,7 +151,7 @@ class EvaluationDesk(Desk):
             "cells": [_cell(cell, k, names, result) for k, cell in enumerate(result.cells)],
             "robots": list(request.lines) if request else [],
             "remarks": remark_lines(result.cells),
-            "comparisons": _sentences(result.compare(), (*names, *METRICS)),
+            "comparisons": _sentences(result.compare()),
             "report": (self._folder(name) / "report.html").is_file(),
         }
 
@@ -258,15 +259,13 @@ def _cell(cell: CellResult, number: int, names: tuple[str, ...], result: Evaluat
     }
 
 
-def _sentences(comparisons: Sequence[PairedComparison], names: Sequence[str]) -> list[str]:
+def _sentences(comparisons: Sequence[PairedComparison]) -> list[str]:
     """Return the comparisons in words; a metric has the name and the unit of its column."""
-    statistics = [parse_statistic(name) for name in reversed(names)]
-    titles = {one.metric: one.title for one in statistics if one.kind in ("mean", "rate")}
     sentences = []
     for item in comparisons:
         if math.isnan(item.p_value):
             continue
         where = ", ".join(filter(None, (item.trial, item.robot)))
-        what = f"{where}, {titles.get(item.metric, item.metric)}: {item.second} minus {item.first} = {item.difference}"
+        what = f"{where}, {metric_title(item.metric)}: {item.second} minus {item.first} = {item.difference}"
         sentences.append(f"{what}, p = {item.corrected:.3g} (corrected)")
     return sentences

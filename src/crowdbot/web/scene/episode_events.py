@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,9 +41,12 @@ class EpisodeEvent(NamedTuple):
 def episode_events(episode: RecordedEpisode) -> list[EpisodeEvent]:
     """Return contacts, near misses and stalls of the robots of an episode, falls of people and pushes, by time."""
     found = _contacts(episode) + _falls(episode)
-    for number, robot in enumerate(episode.robots):
-        name = f"robot {number + 1}" if len(episode.robots) > 1 else "the robot"
-        found += _near_misses(episode, robot, name) + _stalls(episode, robot, name)
+    names = {
+        robot: f"robot {number + 1}" if len(episode.robots) > 1 else "the robot"
+        for number, robot in enumerate(episode.robots)
+    }
+    for robot, name in names.items():
+        found += _near_misses(episode, robot, names) + _stalls(episode, robot, name)
     return sorted(found)
 
 
@@ -124,7 +127,7 @@ def _body(name: str) -> str:
     return f"person {name}" if name.isdecimal() else name
 
 
-def _near_misses(episode: RecordedEpisode, robot: int, name: str) -> list[EpisodeEvent]:
+def _near_misses(episode: RecordedEpisode, robot: int, names: Mapping[int, str]) -> list[EpisodeEvent]:
     found: dict[int, list[tuple[int, float]]] = {}  # times and clearances by person
     for first, ids, gaps in _clearances(episode, robot):
         for k, column in np.argwhere(gaps < NEAR_MISS).tolist():
@@ -135,7 +138,8 @@ def _near_misses(episode: RecordedEpisode, robot: int, name: str) -> list[Episod
         for stretch in np.split(np.arange(len(steps)), np.flatnonzero(np.diff(steps) > 1) + 1):
             k, gap = min((passes[n] for n in stretch.tolist()), key=lambda item: item[1])
             if gap > 0.0:
-                about = f"{name} passes person {person} at {gap:.2f} m"
+                other = names.get(person) or f"person {person}"
+                about = f"{names[robot]} passes {other} at {gap:.2f} m"
                 events.append(EpisodeEvent(round(float(episode.times[k]), 3), "near miss", about))
     return events
 
