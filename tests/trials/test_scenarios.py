@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import itertools
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely import LineString, Point, Polygon
+from shapely.ops import nearest_points
 
 from crowdbot.core import TrialError, stream
 from crowdbot.metrics import metric_table
@@ -29,7 +32,7 @@ from crowdbot.trials import (
     parse_trial,
     trial_xml,
 )
-from crowdbot.world import Router
+from crowdbot.world import Chair, Router, Table
 from samples import sample
 
 LISTED = """
@@ -290,6 +293,39 @@ def test_a_random_hall_is_possible_with_any_seed_and_parameters(layout: int) -> 
             assert trial.stage.clearance(corners.reshape(-1, 2)).min() >= router.radius
             middles = corners.mean(axis=1)
             router.towards(middles, middles[::-1])  # raises without a path
+
+
+def test_tables_of_a_random_hall_have_chairs_and_change_nothing_else() -> None:
+    bare, full = (load_trial("random-hall", layout=3, length=24.0, width=18.0, tables=n) for n in (0, 8))
+    kinds = [type(prop).__name__ for prop in full.stage.props]
+    assert (kinds.count("Table"), kinds.count("Chair")) == (8, 33)
+    assert full == dataclasses.replace(bare, stage=dataclasses.replace(bare.stage, props=full.stage.props))
+    lines = [LineString([*ring, ring[0]]) for ring in bare.stage.rings]
+    tops = [Polygon(prop.ring) for prop in full.stage.props if isinstance(prop, Table)]
+    gaps = [one.distance(other) for one, other in itertools.combinations(tops, 2)]
+    assert min(gaps) > 0.9
+    assert all(table.distance(line) > 0.9 for table in tops for line in lines)
+    for chair in (prop for prop in full.stage.props if isinstance(prop, Chair)):
+        nearest = min(tops, key=Point(chair.x, chair.y).distance)
+        towards = np.subtract(nearest_points(nearest, Point(chair.x, chair.y))[0].coords[0], (chair.x, chair.y))
+        assert 0.0999 <= np.hypot(*towards) <= 0.3801
+        assert towards @ [math.cos(chair.heading), math.sin(chair.heading)] > 0.9 * np.hypot(*towards)
+
+
+def test_a_scanner_in_space_sees_legs_of_furniture_where_a_flat_one_sees_solid_outlines() -> None:
+    text = """<trial name="t" duration="0.1"{words}>
+      <stage walkable="0,0 10,0 10,6 0,6"><table x="5" y="3" heading="0.3"/><chair x="5" y="1.8" heading="1.5"/></stage>
+      <crowd type="orca"/><agent name="a" x="9" y="5" goal="1,5"/>
+      <robot name="r" x="2" y="3"><goal x="9" y="1"/><drive type="differential-drive"/><navigator type="straight"/>
+        <sensor name="scan" type="lidar2d" rays="1080" field-of-view="3" z="0.3"/></robot></trial>"""
+    beams = {}
+    for words in ("", ' bodies="limbs"'):
+        scan = run(parse_trial(text.format(words=words)), 0).readings["r/scan"][0]
+        near = (scan.ranges[0] > 2.0) & (scan.ranges[0] < 4.3) & (np.abs(scan.angles) < 0.6)
+        beams[words] = int(near.sum()), int((np.diff(near.astype(int)) == 1).sum())
+    assert beams[""][0] > 3 * beams[' bodies="limbs"'][0]
+    assert beams[""][1] == 2
+    assert beams[' bodies="limbs"'][1] >= 6  # of eight legs some are hidden by others
 
 
 def test_a_random_hall_is_the_same_on_every_machine() -> None:

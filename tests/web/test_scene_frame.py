@@ -20,7 +20,8 @@ HALL = """
 <trial name="hall" duration="20" world="WORLD" bodies="limbs">
   <stage walkable="-6,-4 6,-4 6,4 -6,4">
     <obstacle points="-4,2 -3,2 -3,3 -4,3"/>
-    <cube x="1.4" y="0" size="0.4" mass="5"/><table x="-4" y="-3"/><tree x="4" y="3"/>
+    <cube x="1.4" y="0" size="0.4" mass="5"/><table x="-4" y="-3"/>
+    <chair x="-4" y="-2.2" heading="-1.5" seat="0.5"/><tree x="4" y="3"/>
     <door name="hall" points="3,-1 3,1" opening="schedule" times="0.2"/>
   </stage>
   <crowd type="orca"/>
@@ -173,7 +174,9 @@ def test_beams_end_where_the_reading_has_its_points(hall):
 
 def test_description_is_json_of_everything_that_stands_still(hall):
     document = json.loads(json.dumps(scene_description(hall), allow_nan=False))
-    assert [one["kind"] for one in document["stage"]["props"]] == ["cube", "table", "tree"]
+    assert [one["kind"] for one in document["stage"]["props"]] == ["cube", "table", "chair", "tree"]
+    chair = document["stage"]["props"][2]
+    assert (chair["seat"], chair["length"], chair["height"]) == (0.5, 0.44, 0.86)
     assert [wall["inner"] for wall in document["stage"]["walls"]].count(True) == 1
     assert document["stage"]["doors"][0]["width"] == pytest.approx(2.0)
     assert {zone["kind"] for zone in document["zones"]} == {"start", "goal"}
@@ -197,7 +200,7 @@ def test_revision_changes_with_people_and_elements():
     assert second != first
     AddElementOrder(xml='<cube x="0" y="3" fixed="true"/>', parent="stage").apply(simulation)
     assert int(sent(simulation).arrays["revision"][0]) not in (first, second)
-    assert len(scene_description(simulation)["stage"]["props"]) == 4
+    assert len(scene_description(simulation)["stage"]["props"]) == 5
 
 
 def test_two_hundred_people_need_at_most_60_kb():

@@ -9,7 +9,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors.beams import sort_beams, unit_vectors
 from crowdbot.sensors.ray_casting import cast_rays
-from crowdbot.world import Cube, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, Table, Tree, scene_bodies
+from crowdbot.world import Chair, Cube, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, Table, Tree, scene_bodies
 
 FAR = 60.0
 ROOM = [[(-7.0, -7.0), (-7.0, 7.0), (7.0, 7.0), (7.0, -7.0)], [(3.0, 3.0), (5.0, 3.0), (5.0, 4.0), (3.0, 4.0)]]
@@ -22,7 +22,12 @@ def world():
     scene = crowded(12, robot, seed=3, size=5.0)
     scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=ROOM).walls)
     stage = PhysicsStage(
-        props=(Cube(1.2, 0.0), Table(-4.0, 4.0, heading=0.4), Cube(-3.0, -4.0, fixed=True, heading=0.3))
+        props=(
+            Cube(1.2, 0.0),
+            Table(-4.0, 4.0, heading=0.4),
+            Cube(-3.0, -4.0, fixed=True, heading=0.3),
+            Chair(-2.5, 3.0, heading=1.0),
+        )
     )
     made = PhysicsWorld(scene, ORCA(), {12: robot}, 0.1, stage=stage)
     for _ in range(15):

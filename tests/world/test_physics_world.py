@@ -14,6 +14,7 @@ from crowdbot.humans import LIMBS, People
 from crowdbot.models import ORCA
 from crowdbot.world import (
     AckermannDrive,
+    Chair,
     ContactModel,
     Cube,
     DifferentialDrive,
@@ -204,7 +205,7 @@ def test_joints_are_commanded():
 
 def test_props_stand_and_people_walk_around_those_that_stand_fast():
     robot = load("turtlebot2")
-    props = (Table(0.0, 0.0, heading=0.3), Tree(3.0, 3.0), Cube(6.0, 0.0, size=0.5))
+    props = (Table(0.0, 0.0, heading=0.3), Tree(3.0, 3.0), Cube(6.0, 0.0, size=0.5), Chair(-5.0, 3.0))
     scene = Scene.of([[-3.0, 0.05], [8.0, 8.0]], goal=[[3.0, 0.05], [8.0, 8.0]], external=[False, True])
     world = PhysicsWorld(scene, ORCA(), {1: robot}, 0.1, stage=PhysicsStage(props=props, lights=(Light(0.0, 0.0),)))
     nearest = np.inf

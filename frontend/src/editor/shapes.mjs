@@ -36,6 +36,7 @@ const AREAS = {
 const BOXES = {
   cube: (a) => [number(a.size, 0.5), number(a.size, 0.5)],
   table: (a) => [number(a.length, 1.6), number(a.width, 0.8)],
+  chair: (a) => [number(a.size, 0.44), number(a.size, 0.44)],
   ramp: (a) => [number(a.length, 1), number(a.width, 1.5)],
   platform: (a) => [number(a.length, 1), number(a.width, 1)],
   threshold: (a) => [number(a.depth, 0.1), number(a.width, 1)],
@@ -51,7 +52,7 @@ const DISCS = {
   point: (a) => [number(a.tolerance, 0.3), "target"],
   camera: () => [0.2, "camera"],
 };
-const HEADINGS = new Set(["robot", "agent", "camera", "avatar", "ramp", "stairs", "cube", "table"]);
+const HEADINGS = new Set(["robot", "agent", "camera", "avatar", "ramp", "stairs", "cube", "table", "chair"]);
 
 /**
  * Returns the shapes of a tree of elements in the order of drawing:

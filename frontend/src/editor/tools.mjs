@@ -21,6 +21,7 @@ const length = ([a, b]) => plain(Math.max(0.1, Math.hypot(b[0] - a[0], b[1] - a[
 
 /** Tools that are needed less often; they are in a list beside the buttons. */
 const MORE = [
+  { name: "chair", title: "Chair", key: "6", more: true, mode: "arrow", into: "stage", xml: (p) => `<chair ${xy(p[0])} heading="${angle(p)}"/>` },
   { name: "ramp", title: "Ramp", key: "1", more: true, mode: "arrow", into: "stage", xml: (p) => `<ramp ${xy(middle(p))} heading="${angle(p)}" length="${length(p)}" height="0.3"/>` },
   { name: "stairs", title: "Stairs", key: "2", more: true, mode: "arrow", into: "stage", xml: (p) => `<stairs ${xy(middle(p))} heading="${angle(p)}" steps="${Math.max(1, Math.round(length(p) / 0.29))}"/>` },
   {

@@ -100,7 +100,8 @@ function drawProp(context, prop, number, state, look, pixel) {
     const [px, py, , w, a, b, c] = state.frame.arrays.props.subarray(7 * at, 7 * at + 7);
     [x, y, turn] = [px, py, Math.atan2(2 * (w * c + a * b), 1 - 2 * (b * b + c * c))];
   }
-  const [length, width] = prop.kind === "table" ? [prop.length, prop.width] : [prop.size ?? 2 * prop.trunk, prop.size ?? 2 * prop.trunk];
+  const side = prop.size ?? 2 * prop.trunk;
+  const [length, width] = [prop.length ?? side, prop.width ?? side];
   context.save();
   context.translate(x, y);
   context.rotate(turn);
@@ -112,6 +113,11 @@ function drawProp(context, prop, number, state, look, pixel) {
   else context.rect(-0.5 * length, -0.5 * width, length, width);
   context.fill();
   context.stroke();
+  if (prop.kind === "chair") {
+    context.beginPath();
+    context.rect(-0.5 * length, -0.5 * width, 0.12 * length, width);
+    context.stroke();
+  }
   if (prop.kind === "tree") {
     context.beginPath();
     context.arc(0, 0, prop.crown, 0, 2 * Math.PI);

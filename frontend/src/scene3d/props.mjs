@@ -1,7 +1,7 @@
 // Meshes of props and doors.
 import * as THREE from "three";
 
-const LEG = 0.05;
+const [LEG, CHAIR_LEG] = [0.05, 0.035];
 
 /** Returns the mesh of a prop at its place, or null for one that is not there. `userData.rise` is its origin's height. */
 export function propMesh(prop, look) {
@@ -38,18 +38,14 @@ const MAKERS = {
     return group;
   },
   table({ length, width, height }, look) {
+    return onLegs(length, width, height, LEG, new THREE.MeshLambertMaterial({ color: look.prop }));
+  },
+  chair({ length, width, seat, height }, look) {
     const wood = new THREE.MeshLambertMaterial({ color: look.prop });
-    const group = new THREE.Group();
-    const top = box(length, width, LEG, wood);
-    top.position.z = height - 0.5 * LEG;
-    group.add(top);
-    for (const a of [-1, 1]) {
-      for (const b of [-1, 1]) {
-        const leg = box(LEG, LEG, height - LEG, wood);
-        leg.position.set(0.5 * a * (length - LEG), 0.5 * b * (width - LEG), 0.5 * (height - LEG));
-        group.add(leg);
-      }
-    }
+    const group = onLegs(length, width, seat, CHAIR_LEG, wood);
+    const back = box(CHAIR_LEG, width, height - seat, wood);
+    back.position.set(0.5 * (CHAIR_LEG - length), 0, 0.5 * (height + seat));
+    group.add(back);
     return group;
   },
   tree({ height, trunk, crown }) {
@@ -71,6 +67,21 @@ const MAKERS = {
     return group;
   },
 };
+
+function onLegs(length, width, height, leg, material) {
+  const group = new THREE.Group();
+  const top = box(length, width, leg, material);
+  top.position.z = height - 0.5 * leg;
+  group.add(top);
+  for (const a of [-1, 1]) {
+    for (const b of [-1, 1]) {
+      const foot = box(leg, leg, height - leg, material);
+      foot.position.set(0.5 * a * (length - leg), 0.5 * b * (width - leg), 0.5 * (height - leg));
+      group.add(foot);
+    }
+  }
+  return group;
+}
 
 function box(x, y, z, material) {
   return solid(new THREE.BoxGeometry(x, y, z), material);

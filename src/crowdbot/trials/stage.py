@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
 from crowdbot.core.fields import Points, attribute, check, children, quote_value
-from crowdbot.world import Appearance, Cube, Door, Light, Table, Tree, add_rings
+from crowdbot.world import Appearance, Chair, Cube, Door, Light, Table, Tree, add_rings
 
 from .files.stage_maps import FARTHEST_FILE, FilePlacement, area_of, map_of
 from .files.trial_files import resolve_file
@@ -96,8 +96,8 @@ class Stage:
     )
     walls: tuple[Wall, ...] = children("wall", about="thin walls")
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")
-    props: tuple[Cube | Table | Tree, ...] = children(
-        {"cube": Cube, "table": Table, "tree": Tree}, about="furniture and plants"
+    props: tuple[Cube | Table | Chair | Tree, ...] = children(
+        {"cube": Cube, "table": Table, "chair": Chair, "tree": Tree}, about="furniture and plants"
     )
     lights: tuple[Light, ...] = children("light", about="lamps (default: daylight)", max=50)
     ground: tuple[GroundElement, ...] = children(

@@ -82,6 +82,7 @@ if TYPE_CHECKING:
     from .physics.people_motion import LimbCapsules as LimbCapsules
     from .physics.people_motion import PeopleMotion as PeopleMotion
     from .physics.scenery import add_rings as add_rings
+    from .physics.stage import Chair as Chair
     from .physics.stage import Cube as Cube
     from .physics.stage import Light as Light
     from .physics.stage import PhysicsStage as PhysicsStage

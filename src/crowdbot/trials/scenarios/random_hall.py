@@ -1,13 +1,14 @@
-"""Random hall: a hall with rooms, doors, obstacles and flows of people, all drawn from one seed.
+"""Random hall: a hall with rooms, doors, obstacles, tables and flows of people, all drawn from one seed.
 
 The hall is divided again and again by walls with one door each, so every room can be reached from every other. Doors
-are wider than the robot, and obstacles keep 1.2 m from walls and from each other. Coordinates are whole centimetres
-from integers of PCG64: a seed gives the same trial on every machine. Numbers are our own.
+are wider than the robot, and obstacles keep 1.2 m from walls and from each other, tables with their chairs 0.9 m.
+Coordinates follow from integers of PCG64: a seed gives the same trial on every machine. Numbers are our own.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import NamedTuple
 
 from numpy.random import Generator
@@ -21,7 +22,7 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.robot import Planner
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
-from crowdbot.world import ContactModel, Zone
+from crowdbot.world import Chair, ContactModel, Table, Zone
 
 from .parts import box, robot, scenario
 from .preset import Preset, PresetOption
@@ -39,7 +40,19 @@ ZONE = 200
 PERSON = 15_000
 """Area of a room for each person at the start [cm2]."""
 TRIES = 50
-"""Places that are tried for an obstacle before it is left out."""
+"""Places that are tried for an obstacle or a table before it is left out."""
+TABLE = 80
+"""Width of a table [cm]."""
+SEAT = 60
+"""Space beside a table in which its chairs stand [cm]."""
+BESIDE = 90
+"""Distance of tables with their chairs from walls and from each other [cm]."""
+PLACE = 60
+"""Length of a table for each chair on a side [cm]."""
+
+
+QUARTER = 1.5708
+"""A quarter of a turn [rad]."""
 
 
 class Rectangle(NamedTuple):
@@ -126,26 +139,75 @@ def _divide(rng: Generator, hall: Rectangle, rooms: int, door: int) -> tuple[lis
     return found, doors, walls
 
 
-def _obstacles(rng: Generator, rooms: list[Rectangle], kept: list[Rectangle], count: int) -> list[Rectangle]:
-    """Return obstacles clear of walls, of each other and of what is kept; those without a place are left out."""
+def _obstacle_size(rng: Generator) -> tuple[int, int]:
+    return _draw(rng, 40, 120), _draw(rng, 40, 120)
+
+
+def _table_size(rng: Generator) -> tuple[int, int]:
+    """Return the size of a table with the space of its chairs, along x or along y."""
+    size = PLACE * _draw(rng, 2, 3), TABLE + 2 * SEAT
+    return size if _draw(rng, 0, 1) else size[::-1]
+
+
+def _solids(
+    rng: Generator,
+    rooms: list[Rectangle],
+    kept: list[Rectangle],
+    count: int,
+    size: Callable[[Generator], tuple[int, int]],
+    aisle: int = AISLE,
+) -> list[Rectangle]:
+    """Return rectangles with an aisle to walls and to each other, clear of what is kept; some may find no place."""
     found: list[Rectangle] = []
     for _ in range(count):
         for _ in range(TRIES):
-            width, height = _draw(rng, 40, 120), _draw(rng, 40, 120)
-            room = rooms[_draw(rng, 0, len(rooms) - 1)].grow(-AISLE)
+            width, height = size(rng)
+            room = rooms[_draw(rng, 0, len(rooms) - 1)].grow(-aisle)
             if room.sides[0] < width or room.sides[1] < height:
                 continue
             place = _part(rng, room, width, height)
-            if not any(place.meets(other) for other in [*(item.grow(AISLE) for item in found), *kept]):
+            if not any(place.meets(other) for other in [*(item.grow(aisle) for item in found), *kept]):
                 found.append(place)
                 break
     return found
 
 
+def _furniture(rng: Generator, place: Rectangle) -> list[Table | Chair]:
+    """Return a table in the middle of its place, and a chair at most of its seats, pushed in or drawn back."""
+    along = 0 if place.sides[1] == TABLE + 2 * SEAT else 1
+    middle = [(place.left + place.right) / 2, (place.low + place.high) / 2]
+    long = place.sides[along]
+    found: list[Table | Chair] = [
+        Table(middle[0] / 100, middle[1] / 100, heading=along * QUARTER, length=long / 100, width=TABLE / 100)
+    ]
+    for side in (-1, 1):
+        for k in range(long // PLACE):
+            taken, back, shift, turn = _draw(rng, 0, 3), _draw(rng, 10, 38), _draw(rng, -6, 6), _draw(rng, -30, 30)
+            if not taken:
+                continue
+            at = [0.0, 0.0]
+            at[along] = middle[along] + PLACE * (k + 0.5) - long / 2 + shift
+            at[1 - along] = middle[1 - along] + side * (TABLE / 2 + back)
+            inwards = -side * QUARTER if along == 0 else (2.0 * QUARTER if side > 0 else 0.0)
+            found.append(Chair(at[0] / 100, at[1] / 100, heading=round(inwards + turn / 100, 4)))
+    return found
+
+
 def random_hall(
-    layout: int, length: float, width: float, rooms: int, door: float, obstacles: int, flows: int, people: int
+    layout: int,
+    length: float,
+    width: float,
+    rooms: int,
+    door: float,
+    obstacles: int,
+    tables: int,
+    flows: int,
+    people: int,
 ) -> Trial:
-    """Return a hall drawn from a seed: rooms, doors, obstacles, flows between rooms, start and goal of the robot."""
+    """Return a hall drawn from a seed: rooms, doors, obstacles, tables with chairs, flows between rooms, and the robot.
+
+    The robot starts in one room and has its goal in another.
+    """
     rng = stream(layout, "random-hall")
     whole = [_draw(rng, round(75 * side), round(100 * side)) for side in (length, width)]
     hall = Rectangle(0, 0, *whole)
@@ -175,11 +237,19 @@ def random_hall(
     start_place, goal = (_part(rng, room.grow(-CLEAR), 0, 0) for room in (begin, end))
     kept += [place.grow(2 * CLEAR) for place in (start_place, goal)]
     ends = [(place.left / 100, place.low / 100) for place in (start_place, goal)]
-    solid = _obstacles(rng, parts, kept, obstacles)
+    solid = _solids(rng, parts, kept, obstacles, _obstacle_size)
+    kept += [item.grow(BESIDE) for item in solid]
+    places = _solids(rng, parts, kept, tables, _table_size, BESIDE)
+    furniture = [prop for place in places for prop in _furniture(rng, place)]
     return scenario(
         "random-hall",
         60.0 + 3 * sum(whole) // 100,
-        Stage(walkable=hall.points(), walls=tuple(walls), obstacles=tuple(Obstacle(item.points()) for item in solid)),
+        Stage(
+            walkable=hall.points(),
+            walls=tuple(walls),
+            obstacles=tuple(Obstacle(item.points()) for item in solid),
+            props=tuple(furniture),
+        ),
         routing=Routing(radius=0.3),
         contact=ContactModel(),
         journeys=journeys,
@@ -200,6 +270,7 @@ RANDOM = (
             "rooms": PresetOption(4, "rooms; fewer if one would be narrower than 3.2 m", "", 1, 20),
             "door": PresetOption(1.2, "smallest width of doors; at most 0.4 m more", "m", 0.9, 2.0),
             "obstacles": PresetOption(3, "obstacles; those without a place are left out", "", 0, 20),
+            "tables": PresetOption(0, "tables with chairs; those without a place are left out", "", 0, 20),
             "flows": PresetOption(3, "flows of people to and fro between two rooms", "", 0, 8),
             "people": PresetOption(5, "people of each flow; fewer in a small room", "", 0, 40),
         },

@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial
 from crowdbot.typing import Floats
-from crowdbot.world import Cube, Table, Tree
+from crowdbot.world import Chair, Cube, Table, Tree
 
 MARGIN = 1.0
 """Free space [m] around what is shown."""
@@ -63,6 +63,8 @@ def _prop(one: Any) -> dict[str, Any]:
         return found | {"kind": "cube", "size": one.size, "color": list(one.color)}
     if isinstance(one, Table):
         return found | {"kind": "table", "length": one.length, "width": one.width, "height": one.height}
+    if isinstance(one, Chair):
+        return found | {"kind": "chair", "length": one.size, "width": one.size, "seat": one.seat, "height": one.height}
     if isinstance(one, Tree):
         return found | {"kind": "tree", "height": one.height, "trunk": one.trunk, "crown": one.crown}
     return found | {"kind": "none"}

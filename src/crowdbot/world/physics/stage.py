@@ -25,8 +25,12 @@ from .layers import DYNAMIC, STANDING
 Color = tuple[float, float, float]
 LEG = 0.05
 """Width of the legs and thickness of the top of a table [m]."""
+CHAIR_LEG = 0.035
+"""Width of the legs of a chair, and thickness of its seat and its back [m]."""
 DAYLIGHT = Appearance()
 BARK = "0.45 0.33 0.22 1"
+WOOD = "0.50 0.34 0.22 1"
+BOX = {"type": "box", "group": "0", **STANDING}
 LEAF = "0.33 0.52 0.27 1"
 
 
@@ -136,19 +140,63 @@ class Table(PropBody):
 
     def body(self, name: str) -> Element:
         element = self._standing(name, 0.0)
-        shared = {"type": "box", "rgba": "0.62 0.44 0.30 1", "group": "0", **STANDING}
-        top = {"pos": row((0.0, 0.0, self.height - LEG / 2)), "size": row((self.length / 2, self.width / 2, LEG / 2))}
-        element.children.append(Element("geom", {"name": f"{name}/0", **shared, **top}))
-        tall = (self.height - LEG) / 2
-        corners = [(a * (self.length - LEG) / 2, b * (self.width - LEG) / 2) for a in (-1, 1) for b in (-1, 1)]
-        for number, (x, y) in enumerate(corners):
-            leg = {"pos": row((x, y, tall)), "size": row((LEG / 2, LEG / 2, tall))}
-            element.children.append(Element("geom", {"name": f"{name}/{number + 1}", **shared, **leg}))
+        element.children.extend(_on_legs(name, "0.62 0.44 0.30 1", (self.length, self.width, self.height), LEG))
         return element
 
     @property
     def ring(self) -> Floats:
         return self._rectangle(self.length, self.width)
+
+
+@dataclass(frozen=True)
+class Chair(PropBody):
+    """A chair with four legs and a back, fixed to the floor.
+
+    People avoid its seat as a solid square; in space a scanner below the seat meets the legs only.
+
+    >>> Chair(1.0, 2.0).ring.round(2).tolist()
+    [[0.78, 1.78], [1.22, 1.78], [1.22, 2.22], [0.78, 2.22]]
+    """
+
+    heading: float = attribute(0.0, about="where a person on it looks, counter-clockwise from +x", unit="rad")
+    size: float = attribute(0.44, about="side of the seat", unit="m", min=0.1, max=10.0)
+    seat: float = attribute(0.46, about="height of the seat", unit="m", min=0.1, max=10.0)
+    height: float = attribute(0.86, about="height of the back, above the seat", unit="m", min=0.1, max=20.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        lowest = self.seat + CHAIR_LEG
+        if self.height < lowest:
+            raise InputError(
+                f"height = {self.height:g} m must be at least {lowest:g} m, above the seat = {self.seat:g} m"
+            )
+
+    def body(self, name: str) -> Element:
+        element = self._standing(name, 0.0)
+        element.children.extend(_on_legs(name, WOOD, (self.size, self.size, self.seat), CHAIR_LEG))
+        tall = (self.height - self.seat) / 2
+        back = {"pos": row(((CHAIR_LEG - self.size) / 2, 0.0, self.seat + tall))}
+        back |= {"size": row((CHAIR_LEG / 2, self.size / 2, tall))}
+        element.children.append(Element("geom", {"name": f"{name}/5", "rgba": WOOD, **BOX, **back}))
+        return element
+
+    @property
+    def ring(self) -> Floats:
+        return self._rectangle(self.size, self.size)
+
+
+def _on_legs(name: str, color: str, size: tuple[float, float, float], leg: float) -> list[Element]:
+    """Return the boxes of a plate on four legs, of this length, width and height; ``leg`` is the width of all."""
+    length, width, height = size
+    shared = {"rgba": color, **BOX}
+    top = {"pos": row((0.0, 0.0, height - leg / 2)), "size": row((length / 2, width / 2, leg / 2))}
+    result = [Element("geom", {"name": f"{name}/0", **shared, **top})]
+    tall = (height - leg) / 2
+    corners = [(a * (length - leg) / 2, b * (width - leg) / 2) for a in (-1, 1) for b in (-1, 1)]
+    for number, (x, y) in enumerate(corners):
+        foot = {"pos": row((x, y, tall)), "size": row((leg / 2, leg / 2, tall))}
+        result.append(Element("geom", {"name": f"{name}/{number + 1}", **shared, **foot}))
+    return result
 
 
 @dataclass(frozen=True)
