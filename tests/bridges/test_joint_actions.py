@@ -1,6 +1,8 @@
 """Goals of FollowJointTrajectory: feedback, tolerances, cancel and preemption, and each transport that carries them."""
 
 import json
+import os
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -8,10 +10,11 @@ from pathlib import Path
 import pytest
 from bridge_runs import MemoryTransport, Running, serve
 from page_runs import FENCE, HOW_TO
-from ros1_master import RosMaster
+from ros1_master import PYTHON, RosMaster
 from test_joint_trajectory import Sender, lab, trajectory
 
 from crowdbot.bridges import BridgeClock, Inbox, RobotInterface, interface_store, run_bridge
+from crowdbot.bridges.inbox import ServiceCall
 from crowdbot.bridges.joint_actions import (
     ABORTED,
     CANCELED,
@@ -23,6 +26,7 @@ from crowdbot.bridges.joint_actions import (
     REJECTED,
     SUCCEEDED,
     SUCCESSFUL,
+    JointActions,
     goal_end,
 )
 from crowdbot.bridges.ros1 import Ros1Node
@@ -34,6 +38,7 @@ from crowdbot.bridges.rosbridge.session import ClientSession
 from crowdbot.core import InputError
 from crowdbot.messages import Ros1Messages
 from crowdbot.recording import replay
+from crowdbot.simulation import Simulation
 from crowdbot.trials import parse_trial
 from web.simulator_session import wait_until
 
@@ -256,7 +261,7 @@ def test_the_topics_of_actionlib_carry_goals_states_and_cancellations():
     assert first.canceled
     first.answer(goal_end(CANCELED, SUCCESSFUL, "canceled"))
     name, message = sent[-1]
-    assert [(row.goal_id.id, row.status) for row in message.status_list] == [("a", 2), ("b", 5)]
+    assert [(row.goal_id.id, row.status) for row in message.status_list] == [("a", 2), ("b", 5), ("x", 7)]
     now[0] = 6.0
     server.tell_states()
     assert sent[-1][1].status_list == []
@@ -286,6 +291,91 @@ def test_actionlib_cancels_a_goal_by_its_id_and_goals_up_to_a_time(stamps, ident
     name, seconds = identity
     server.receive(cancel, {"id": name, "stamp": {"sec": seconds, "nanosec": 0}}, "ros1")
     assert [call.canceled for call in calls] == canceled
+
+
+def identity_of(name, seconds):
+    return {"id": name, "stamp": {"sec": seconds, "nanosec": 0}}
+
+
+def states_of(steps):
+    """Return what the server does for steps of ``ros1_action_rules.py``: states after each, and the results."""
+    codec, now, states, results, waiting = Ros1Messages(), [100.0], [], [], []
+
+    def row(status):
+        return [status.goal_id.id, status.status]
+
+    def keep(topic, data):
+        name = topic.rpartition("/")[2]
+        if name == "result":
+            results.append(row(codec.message(data, server.outputs[2].kind).status))
+        elif name == "status":
+            states[-1] = [row(item) for item in codec.message(data, server.outputs[0].kind).status_list]
+
+    server, inbox = actionlib_server(keep, lambda: now[0])
+    take, cancel = (item.name for item in server.inputs)
+    inbox.begin_instant(100 * 10**9)
+    for word, *values in steps:
+        states.append([])
+        if word == "goal":
+            server.receive(take, {"goal_id": identity_of(*values), "goal": goal((0.5, (0.1,)))}, "ros1")
+        elif word == "cancel":
+            server.receive(cancel, identity_of(*values), "ros1")
+        elif word == "take":
+            waiting += inbox.take_calls()
+            for call in list(waiting):
+                if call.canceled:
+                    waiting.remove(call)
+                    call.answer(goal_end(CANCELED, SUCCESSFUL, "canceled"))
+                else:
+                    call.feedback({})
+        else:
+            now[0] += values[0]
+            inbox.begin_instant(round(now[0] * 1e9))
+        server.tell_states()
+    return [states, results]
+
+
+def test_a_cancellation_that_comes_before_its_goal_recalls_it():
+    early = [["cancel", "a", 0], ["goal", "a", 7], ["take"]]
+    assert states_of(early) == [[[["a", 7]], [["a", 8]], [["a", 8]]], [["a", 8]]]
+    late = [["cancel", "", 20], ["goal", "a", 20], ["goal", "b", 21], ["goal", "c", 0], ["take"]]
+    assert states_of(late)[0][-1] == [["a", 8], ["b", 1], ["c", 1]]
+    assert states_of([early[0], ["wait", 6.0], *early[1:]])[0][-1] == [["a", 1]]  # forgotten
+    assert states_of([late[0], ["wait", -90.0], late[1], ["take"]])[0][-1] == [["a", 1]]  # the trial begins again
+
+
+def test_goals_without_an_id_are_different_goals():
+    steps = [["goal", "", 0], ["goal", "", 0]]
+    assert [state for _, state in states_of(steps)[0][-1]] == [0, 0]
+
+
+def test_a_goal_that_was_canceled_before_the_simulation_took_it_ends_no_other():
+    first, second = (goal((1.0, (value,))) for value in (1.0, -1.0))
+    actions, answers = JointActions(), []
+    calls = [ServiceCall(ACTION, fields, answers.append, "test") for fields in (first, second)]
+    simulation = Simulation(lab(), 0)
+    calls[1].canceled = True
+    for call in calls:
+        actions.begin(call, "pepper", simulation)
+    assert answers == [goal_end(CANCELED, SUCCESSFUL, "canceled")]
+
+
+def test_the_states_of_goals_are_those_of_the_real_actionlib(ros1, tmp_path):
+    draw = random.Random(0)
+    words = [
+        lambda: ["goal", draw.choice("abcd"), draw.choice([0, 10, 20, 30])],
+        lambda: ["cancel", draw.choice(["", *"abcd"]), draw.choice([0, 0, 5, 10, 25])],
+        lambda: ["take"],
+        lambda: ["wait", draw.choice([1.0, 6.0])],
+    ]
+    lists = [[draw.choices(words, (5, 3, 3, 1))[0]() for _ in range(12)] for _ in range(500)]
+    path = tmp_path / "steps.json"
+    path.write_text(json.dumps(lists))
+    command = [PYTHON, str(Path(__file__).with_name("ros1_action_rules.py")), str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, env=os.environ | {"PYTHONPATH": ""})
+    assert done.returncode == 0, done.stderr
+    for steps, wanted in zip(lists, json.loads(done.stdout), strict=True):
+        assert states_of(steps) == wanted, steps
 
 
 def test_the_types_of_ros1_are_those_of_control_msgs():

@@ -87,7 +87,10 @@ class JointActions:
         self._goals: list[_Goal] = []
 
     def begin(self, call: ServiceCall, robot: str, simulation: Simulation) -> None:
-        """Begin to follow a goal at the current instant, or answer that it is rejected."""
+        """Begin to follow a goal at the current instant, or answer that it is rejected or was canceled meanwhile."""
+        if call.canceled:  # it ends no other goal
+            call.answer(goal_end(CANCELED, SUCCESSFUL, "canceled"))
+            return
         code = INVALID_GOAL
         try:
             trajectory = _read(call, robot)
