@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import pytest
 import rclpy.node
+from action_msgs.msg import GoalStatus
 from bridge_runs import MemoryTransport, Running
 from geometry_msgs.msg import TransformStamped
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
@@ -20,8 +22,9 @@ from rclpy.serialization import deserialize_message
 from rosbags.interfaces import Nodetype
 
 from crowdbot.bridges import SERVICES, BridgeClock, interface_store, open_transport, run_bridge
+from crowdbot.bridges.joint_actions import INVALID_GOAL
 from crowdbot.bridges.ros2 import Ros2Node
-from crowdbot.bridges.ros2.node import fill_message, message_fields
+from crowdbot.bridges.ros2.messages import fill_message, message_fields
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
@@ -108,6 +111,46 @@ def test_another_program_calls_the_services(tmp_path, domain):
     assert answers == [refused, "done", [True, ""], [True, ""], "done", "done"]
     assert (tmp_path / "episode-2.mcap").exists()  # after the reset
     assert node.missing_services == tuple(f"simulation_interfaces/srv/{item.kind}" for item in SERVICES.values())
+
+
+LAB = """<trial name="lab" duration="600" step="0.05"><crowd type="orca"/>
+  <robot name="pepper" type="pepper" x="0" y="0" default-sensors="false"><goal x="9" y="0"/>
+    <navigator type="external"/></robot>
+</trial>"""
+
+
+@pytest.fixture
+def with_control_msgs(tmp_path):
+    """Variables of programs that find ``control_msgs``, which the wheels of rclpy lack, as after sourcing ROS."""
+    words = [sys.executable, str(HERE / "ros2_types.py"), str(tmp_path / "types")]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    added = {"PYTHONPATH": tmp_path / "types" / "py", "LD_LIBRARY_PATH": tmp_path / "types" / "lib"}
+    found = {name: os.pathsep.join(filter(None, [str(path), os.environ.get(name)])) for name, path in added.items()}
+    return os.environ | found
+
+
+def test_a_client_of_rclpy_sends_goals_to_the_ros2_node(with_control_msgs, domain, tmp_path):
+    path = tmp_path / "lab.xml"
+    path.write_text(LAB, encoding="utf-8")
+    words = [sys.executable, "-m", "crowdbot", "run", str(path), "--bridge", f"ros2:{domain}"]
+    client = [sys.executable, str(HERE / "ros2_action_client.py"), str(domain)]
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": with_control_msgs}
+    with subprocess.Popen(words, **options) as server, subprocess.Popen(client, **options) as program:
+        try:
+            found = ended(program)
+        finally:
+            program.kill()
+            server.send_signal(signal.SIGINT)
+            _, errors = server.communicate(timeout=60)
+    assert found == {
+        "result": [GoalStatus.STATUS_SUCCEEDED, 0], "feedback": True, "position": 0.5, "accepted_cancel": 1,
+        "canceled": [GoalStatus.STATUS_CANCELED, 0], "replaced": [GoalStatus.STATUS_ABORTED, INVALID_GOAL],
+        "newer": [GoalStatus.STATUS_SUCCEEDED, 0], "rejected": True,
+    }  # fmt: skip
+    assert "no joint 'HeadYow', did you mean 'HeadYaw'?" in errors
+    assert "control_msgs" not in errors
+    assert "Traceback" not in errors
 
 
 def ros_class(kind):

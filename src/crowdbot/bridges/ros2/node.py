@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import array
 import functools
 import importlib
 import os
 import queue
-import re
 import threading
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
-
-import numpy as np
 
 from crowdbot.bridges.fields import fields_of
 from crowdbot.bridges.inbox import Inbox
@@ -31,75 +27,14 @@ from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError, MissingExtra, import_optional
 from crowdbot.recording import StepMessage
 
-TYPES = {"float": float, "double": float, "boolean": bool, "string": str}
-"""Python types of the numbers and texts of ROS; all others are whole numbers."""
-
-
-def message_fields(message: Any) -> dict[str, Any]:
-    """Return the fields of a message of rclpy; arrays become lists.
-
-    >>> class Steps:
-    ...     steps = 3
-    ...     def get_fields_and_field_types(self):
-    ...         return {"steps": "uint64"}
-    >>> message_fields(Steps())
-    {'steps': 3}
-    """
-    return {name: _plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
-
-
-def _plain(value: Any) -> Any:
-    if hasattr(value, "get_fields_and_field_types"):
-        return message_fields(value)
-    if isinstance(value, array.array | np.ndarray):
-        return value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return value
-
-
-def fill_message(message: Any, fields: Mapping[str, Any]) -> Any:
-    """Set the fields of a message of rclpy that a mapping has, and return it; others stay 0 or empty.
-
-    Args:
-        message: the message.
-        fields: nested mappings.
-    """
-    for name, kind in message.get_fields_and_field_types().items():
-        if name in fields:
-            setattr(message, name, _typed(fields[name], kind, getattr(message, name)))
-    return message
-
-
-def _typed(value: Any, kind: str, now: Any) -> Any:
-    """Return a value of a type, such as ``double``, ``geometry_msgs/Point`` or ``sequence<string>``."""
-    if hasattr(now, "get_fields_and_field_types"):
-        return fill_message(now, value)
-    inner = re.fullmatch(r"sequence<(.*?)(?:, *\d+)?>", kind) or re.fullmatch(r"(.*)\[\d+\]", kind)
-    if inner is None:
-        return TYPES.get(kind, int)(value)
-    return [_typed(item, inner[1], _new(inner[1])) for item in value]
-
-
-def _new(kind: str) -> Any:
-    """Return an empty message of a type, None for a number or text."""
-    package, sign, name = kind.partition("/")
-    return getattr(importlib.import_module(f"{package}.msg"), name)() if sign else None
-
+from .actions import GOALS, JointActionServers
+from .messages import fill_message, message_fields, ros_class
 
 CALLS = 4
 """Number of calls that can wait for the simulation at the same time; the node needs as many threads."""
 ANSWER_TIME = 600.0
 """Longest real time [s] that a call waits for the simulation."""
 UNANSWERED = "the simulation does not answer"
-
-
-def service_class(package: str, kind: str) -> Any:
-    """Return the class of a service type of the ROS installation; None if its package is not installed."""
-    try:
-        return getattr(importlib.import_module(f"{package}.srv"), kind, None)
-    except ImportError:
-        return None
 
 
 def add_services(node: Any, inbox: Inbox, sender: str) -> tuple[str, ...]:
@@ -115,15 +50,17 @@ def add_services(node: Any, inbox: Inbox, sender: str) -> tuple[str, ...]:
     missing: dict[str, None] = {}
     group = importlib.import_module("rclpy.callback_groups").ReentrantCallbackGroup()
     for name, plain in PLAIN_SERVICES.items():
-        found = service_class("std_srvs", plain.kind)
+        kind = f"std_srvs/srv/{plain.kind}"
+        found = ros_class(kind)
         if found is None:
-            missing[f"std_srvs/srv/{plain.kind}"] = None
+            missing[kind] = None
         else:
             node.create_service(found, name, _plain_callback(plain, node, inbox, sender), callback_group=group)
     for short, definition in SERVICES.items():
-        found = service_class(PACKAGE, definition.kind)
+        kind = f"{PACKAGE}/srv/{definition.kind}"
+        found = ros_class(kind)
         if found is None:
-            missing[f"{PACKAGE}/srv/{definition.kind}"] = None
+            missing[kind] = None
         else:
             name = f"/crowdbot/{short}"
             node.create_service(found, name, _callback(name, inbox, sender), callback_group=group)
@@ -227,9 +164,9 @@ RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 class Ros2Node:
     """A ROS 2 node that publishes the outputs of a trial and takes its commands, with the messages of the recorder.
 
-    Topics and services whose packages are not installed are left out; :attr:`missing` and :attr:`missing_services` list
-    their types, and the node says so in its log. The wheels of PyPI, for instance, have no ``tf2_msgs`` and no
-    ``simulation_interfaces``.
+    Topics, actions and services whose packages are not installed are left out; :attr:`missing` and
+    :attr:`missing_services` list their types, and the node says so in its log. The wheels of PyPI have no ``tf2_msgs``,
+    ``control_msgs`` and ``simulation_interfaces``, for instance.
 
     Nodes on other computers are not seen unless a host is given or ``ROS_AUTOMATIC_DISCOVERY_RANGE`` is set.
 
@@ -250,10 +187,12 @@ class Ros2Node:
         self._ros: Any = import_optional("rclpy", "the bridge ros2 (or source your own ROS 2)", "ros2-wheels")
         self.domain, self.everywhere = domain, everywhere
         self.missing: tuple[str, ...] = ()
-        """Message types that are not installed."""
+        """Types of messages and actions that are not installed."""
         self.missing_services: tuple[str, ...] = ()
         """Service types that are not installed."""
         self._services: Participant | None = None
+        self._acting: Participant | None = None
+        self._actions: JointActionServers | None = None
         self._participants: list[Participant] = []
         self._publishers: dict[str, tuple[str, Any]] = {}
         self._subscriptions: dict[tuple[str, str], Any] = {}
@@ -287,11 +226,24 @@ class Ros2Node:
             self._services = Participant(self._ros, f"{NODE}_services", self.domain, CALLS)
             self.missing_services = add_services(self._services.node, inbox, self.name)
             self._services.start()
+        self._offer(interface, inbox, missing)
         self.missing = tuple(missing)
         if missing:
-            self.report("warning", f"not installed, so topics are left out: {', '.join(missing)}")
+            self.report("warning", f"not installed, so topics and actions are left out: {', '.join(missing)}")
         for participant in self._participants:
             participant.start()
+
+    def _offer(self, interface: RobotInterface, inbox: Inbox, missing: dict[str, None]) -> None:
+        """Offer the actions; their node exists once a trial has some whose type is installed."""
+        kinds = {action.kind: ros_class(action.kind) for action in interface.actions}
+        missing.update(dict.fromkeys(kind for kind, found in kinds.items() if found is None))
+        actions = [action for action in interface.actions if kinds[action.kind] is not None]
+        if actions and self._acting is None:
+            self._acting = Participant(self._ros, f"{NODE}_actions", self.domain, GOALS + 2)
+            self._actions = JointActionServers(self._acting.node, inbox, self.name)
+            self._acting.start()
+        if self._actions is not None:
+            self._actions.offer(actions)
 
     def _announce(self, interface: RobotInterface, missing: dict[str, None]) -> None:
         wanted = {output.name: output for output in interface.outputs}
@@ -304,7 +256,7 @@ class Ros2Node:
                 self._add_publisher(item, missing)
 
     def _add_publisher(self, output_topic: OutputTopic, missing: dict[str, None]) -> None:
-        found = message_class(output_topic.kind)
+        found = ros_class(output_topic.kind)
         if found is None:
             missing[output_topic.kind] = None
             return
@@ -334,7 +286,7 @@ class Ros2Node:
     def _add_subscription(
         self, input_topic: InputTopic, kind: str, node: Any, inbox: Inbox, missing: dict[str, None]
     ) -> None:
-        found = message_class(kind)
+        found = ros_class(kind)
         if found is None:
             missing[kind] = None
             return
@@ -380,18 +332,10 @@ class Ros2Node:
 
     def stop(self) -> None:
         """Stop the node."""
-        for participant in (*self._participants, *([self._services] if self._services else [])):
-            participant.stop()
-        self._participants, self._services = [], None
-
-
-def message_class(kind: str) -> Any:
-    """Return the class of a message type of the ROS installation; None if its package is not installed."""
-    package, _, name = kind.split("/")
-    try:
-        return getattr(importlib.import_module(f"{package}.msg"), name, None)
-    except ImportError:
-        return None
+        for participant in (*self._participants, self._services, self._acting):
+            if participant is not None:
+                participant.stop()
+        self._participants, self._services, self._acting, self._actions = [], None, None, None
 
 
 def quality_profile(quality: QualityOfService) -> Any:
