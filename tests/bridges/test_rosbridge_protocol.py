@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from crowdbot.bridges import Inbox, RobotInterface, fields_of, plain_fields
-from crowdbot.bridges.rosbridge.frames import MOST_TEXT, FrameReader, OutgoingMessage, encode_cbor
+from crowdbot.bridges.rosbridge.frames import MOST_TEXT, FrameReader, OutgoingMessage, dump_json, encode_cbor
 from crowdbot.bridges.rosbridge.graph import ROSAPI, RosGraph, type_details
 from crowdbot.bridges.rosbridge.session import ClientSession, Subscription
 from crowdbot.core import InputError
@@ -92,6 +92,19 @@ def test_bytes_are_base64_in_json_and_bytes_in_cbor():
     assert cbor2.loads(encode_cbor(fields_of(image)))["data"] == bytes([7, 200])
 
 
+def test_the_text_of_a_message_with_bytes_is_that_of_json(graph):
+    pixels = np.arange(256, dtype=np.uint8)
+    for data in (pixels, pixels[:0]):
+        image = MAKE.make(
+            "sensor_msgs/msg/Image", header=MAKE.header(0, 'a"b'), height=1, width=data.size, encoding="mono8",
+            is_bigendian=0, step=data.size, data=data,
+        )  # fmt: skip
+        (text,) = OutgoingMessage.of(StepMessage("/i", "sensor_msgs/msg/Image", 0, MAKE, image)).frames(
+            "none", None, ""
+        )
+        assert text == dump_json({"op": "publish", "topic": "/i", "msg": plain_fields(image)})
+
+
 def test_cbor_is_read_by_an_independent_library():
     rng = random.Random(5)
 
@@ -128,6 +141,24 @@ def test_a_queue_keeps_as_many_as_the_client_asks_for(graph):
     for k in range(10):
         graph.deliver([scan(k, float(k))])
     assert [item["msg"]["ranges"][0] for item in taken(session)] == [7.0, 8.0, 9.0]
+
+
+def test_topics_come_in_the_order_of_their_messages_and_take_turns(graph):
+    """A client that has subscribed the clock last gets it before an image of the same step."""
+    session = client(graph)
+    for topic, depth in (("/image", 1), ("/flood", 3), ("/clock", 1)):
+        send(session, op="subscribe", topic=topic, queue_length=depth)
+
+    def offer(*topics):
+        for topic in topics:
+            session.offer(OutgoingMessage(topic, "std_msgs/msg/String", 0, lambda: {"data": ""}))
+
+    offer("/clock", "/image")
+    assert [row["topic"] for row in taken(session)] == ["/clock", "/image"]
+    offer("/flood", "/flood", "/flood", "/clock", "/image")
+    assert json.loads(session.take()[0][0])["topic"] == "/flood"
+    offer("/clock", "/image", "/flood")
+    assert [row["topic"] for row in taken(session)] == ["/clock", "/image", "/flood", "/flood", "/flood"]
 
 
 def test_throttled_messages_keep_their_distance_in_real_time(graph):

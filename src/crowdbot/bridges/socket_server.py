@@ -292,6 +292,7 @@ async def _send(
                 for frame in frames:
                     await (socket.send_str(frame) if isinstance(frame, str) else socket.send_bytes(frame))
                     size += len(frame)
+                await asyncio.sleep(0)  # a command that answers the first message is not kept waiting by an image
             if size:
                 credit.clear()
                 await socket.ping(b"round")

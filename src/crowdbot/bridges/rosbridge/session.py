@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -136,7 +135,8 @@ class ClientSession:
         self._replies = MessageQueue[str](self._backlog, MOST_REPLIES)
         self._reader = FrameReader()
         self._advertised: dict[str, set[str]] = {}
-        self._turn: deque[str] = deque()
+        self._turn: dict[str, None] = {}
+        """Topics with messages that wait, in the order in which the first ones came: the clock before an image."""
         graph.sessions.append(self)
 
     def handle(self, data: str | bytes) -> None:
@@ -178,19 +178,24 @@ class ClientSession:
         found = self.subscriptions.get(message.topic)
         if found is not None:
             found.offer(message)
+            self._turn[message.topic] = None
             self.wake()
 
     def take(self) -> tuple[list[str | bytes], float | None]:
-        """Return the next frames, or the time [s] until there are some (None: nothing waits)."""
+        """Return the next frames, or the time [s] until there are some (None: nothing waits); topics take turns."""
         if self._replies:
             return [self._replies.popleft()], 0.0
         now, first = self.clock(), None
-        for _ in range(len(self._turn)):
-            topic = self._turn[0]
-            self._turn.rotate(-1)
-            wait = self.subscriptions[topic].wait_time(now)
+        for topic in list(self._turn):
+            subscription = self.subscriptions[topic]
+            wait = subscription.wait_time(now)
+            if not wait:
+                del self._turn[topic]
             if wait == 0.0:
-                return self._encode(self.subscriptions[topic], now), 0.0
+                frames = self._encode(subscription, now)
+                if subscription.wait_time(now) is not None:
+                    self._turn[topic] = None
+                return frames, 0.0
             if wait is not None:
                 first = wait if first is None else min(first, wait)
         return [], first
@@ -261,7 +266,6 @@ class ClientSession:
         subscription.add(str(frame.get("id", "")), frame)
         if topic not in self.subscriptions:
             self.subscriptions[topic] = subscription
-            self._turn.append(topic)
             self.graph.collect_subscriptions()
             if topic in self.graph.latched:
                 self.offer(self.graph.latched[topic])
@@ -274,7 +278,7 @@ class ClientSession:
         name = frame.get("id")
         if found.remove(None if name is None else str(name)):
             del self.subscriptions[topic]
-            self._turn.remove(topic)
+            self._turn.pop(topic, None)
             self.graph.collect_subscriptions()
 
     def _set_level(self, frame: Frame) -> None:
