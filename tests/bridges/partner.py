@@ -157,7 +157,7 @@ class TcpLink:
     def __init__(self, address):
         host, _, port = address.partition(":")
         self._socket = socket.create_connection((host, int(port)), timeout=30.0)
-        self._now = -1
+        self._now = self._ticked = -1
 
     def ask(self, text):
         try:
@@ -173,17 +173,22 @@ class TcpLink:
         self._now = round(float(found.partition(b"#")[2].partition(b";")[0]) * 1e9)
 
     def tick(self, seconds):
-        last, end = self._now, time.monotonic() + seconds
-        while time.monotonic() < end:  # replies come to requests only, so it asks for the time
-            self.ask("sim_control=i;")
-            if self._now != last:
-                return self._now
+        end = time.monotonic() + seconds
+        while self._now == self._ticked:  # replies come to requests only, so it asks for the time
+            if time.monotonic() > end:
+                return None
             time.sleep(LOOK)
-        return None
+            self.ask("sim_control=i;")
+        self._ticked = self._now
+        return self._now
 
     def drive(self, nanoseconds):
         forward, turn = command_of(nanoseconds)
         self.ask(f"vel_cmd={forward} {57.29577951308232 * turn};sim_control=i;")
+
+    def answer(self, nanoseconds):
+        if nanoseconds == self._now:  # a request answers the latest reply, so it cannot be older
+            self.drive(nanoseconds)
 
     def set_time(self, nanoseconds):
         self.ask(f"clock={nanoseconds / 1e9:.9f};sim_control=i;")
