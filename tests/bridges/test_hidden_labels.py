@@ -11,8 +11,10 @@ from test_interface_page import load_tool
 
 from crowdbot.bridges import Inbox, RobotInterface
 from crowdbot.bridges.foxglove.session import FoxgloveGraph
+from crowdbot.bridges.joint_actions import ABORTED, INVALID_GOAL, goal_end
 from crowdbot.bridges.rosbridge.graph import RosGraph
 from crowdbot.bridges.stack_link import StackPort
+from crowdbot.core import InputError
 from crowdbot.messages import Messages, Ros1Messages
 from crowdbot.messages.point_clouds import points_in
 from crowdbot.simulation import Simulation
@@ -119,6 +121,24 @@ def test_without_the_truth_only_what_a_real_robot_has_is_offered_and_sent(everyt
     rosbridge, foxglove = RosGraph(port.interface, inbox, print), FoxgloveGraph(port.interface, inbox, print)
     inputs = {input_topic.name for input_topic in port.interface.inputs}
     assert {*rosbridge.topics} - inputs == {*foxglove.channels} == offered
+
+
+def test_the_joints_of_other_robots_cannot_be_moved_and_goals_end_with_the_run(everything):
+    simulation = Simulation(everything, 0)
+    port = StackPort(everything, [MemoryTransport()], ["robot"], truth=True)
+    port.start()
+    assert [action.name for action in port.interface.actions] == ["/robot/follow_joint_trajectory"]
+    points = [{"positions": [0.5], "time_from_start": {"sec": 9, "nanosec": 0}}]
+    goal, answers = {"trajectory": {"joint_names": ["HeadYaw"], "points": points}}, []
+    with pytest.raises(InputError, match="there is no service '/other/follow_joint_trajectory'"):
+        port.inbox.call("/other/follow_joint_trajectory", goal, answers.append, "test")
+    simulation.begin()
+    port.begin(simulation)
+    port.inbox.call("/robot/follow_joint_trajectory", goal, answers.append, "test")
+    port.serve(simulation)
+    port.inbox.call("/robot/follow_joint_trajectory", goal, answers.append, "test")
+    port.stop()
+    assert answers == [goal_end(ABORTED, INVALID_GOAL, "the run has ended")] * 2
 
 
 def test_with_the_truth_everything_of_its_robots_and_the_scene_is_offered(everything):

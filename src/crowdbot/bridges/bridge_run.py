@@ -107,7 +107,7 @@ class BridgeRun:
         with contextlib.ExitStack() as stack:
             self.stop = stack.enter_context(catch_interrupt())
             stack.callback(self.port.stop)
-            stack.callback(self._answer_rest)
+            stack.callback(self._finish_control)
             self.port.start()
             if self.port.transports:
                 names = ", ".join(transport.name for transport in self.port.transports)
@@ -238,11 +238,10 @@ class BridgeRun:
             self.port.report("error", f"the time on /clock went back to {now / 1e9:g} s from {clock.time:g} s")
         return 0.0 if now >= clock.nanoseconds + clock.step_ns else IDLE
 
-    def _answer_rest(self) -> None:
-        """Answer the calls that still wait at the end."""
+    def _finish_control(self) -> None:
+        """Answer who waits for steps or another beginning, at the end; the port answers all others."""
         self.control.finish_steps(False)
         self.control.finish_restart("the run has ended")
-        self.port.answer_rest("the run has ended")
 
     def _file(self, number: int) -> Path | None:
         if self.out is None or number == 1:

@@ -96,7 +96,8 @@ class BridgePort:
             transport.start(self.interface, self.inbox)
 
     def stop(self) -> None:
-        """Close all transports."""
+        """Answer what waits, since programs and transports wait for it, and close all transports."""
+        self.answer_rest("the run has ended")
         for transport in self.transports:
             transport.stop()
 

@@ -77,7 +77,8 @@ class StackPort(BridgePort):
             if input_topic.robot in self.robots and input_topic.name.rpartition("/")[2] in DRIVEN
         )
         outputs = [*filter(self._offers, whole.outputs), *(_goal_topic(name) for name in self.robots)]
-        return dataclasses.replace(whole, outputs=tuple(outputs), inputs=inputs, services=())
+        actions = tuple(action for action in whole.actions if action.robot in self.robots)
+        return dataclasses.replace(whole, outputs=tuple(outputs), inputs=inputs, services=(), actions=actions)
 
     def begin(self, simulation: Simulation) -> None:
         self._goals.clear()
