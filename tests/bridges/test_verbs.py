@@ -4,6 +4,8 @@ import pytest
 from bridge_runs import MemoryTransport, Running
 
 from crowdbot.bridges import SERVICES, RobotInterface, interface_store, message_of, request_kind, response_kind
+from crowdbot.bridges import simulation_services as services
+from crowdbot.bridges.run_control import PAUSED, PLAYING, QUITTING, STOPPED
 from crowdbot.bridges.simulation_services import Verbs
 from crowdbot.core import InputError
 from crowdbot.recording import read_episode, replay
@@ -82,10 +84,12 @@ def test_people_robots_and_props_are_added_moved_and_removed(tmp_path):
             "person_2",
             "person_3",
         ]
-        assert transport.call("get_entities", {"filters": {"categories": [{"category": 2}]}})["entities"] == [
-            "robot",
-            "bot",
-        ]
+        kinds = [{"filters": {"categories": [{"category": number}]}} for number in range(6)]
+        people = [name for name in names if name.startswith("person")]
+        found = [sorted(transport.call("get_entities", kind)["entities"]) for kind in kinds]
+        assert found == [[], ["bot", "robot"], sorted(people), [], [], []]
+        info = [transport.call("get_entity_info", {"entity": name})["info"] for name in ("bot", "person_2")]
+        assert [row["category"]["category"] for row in info] == [1, 2]
         near = {"type": 3, "points": [{"x": 2.0, "y": -0.8}, {"x": 0.5}]}
         assert transport.call("get_entities", {"filters": {"bounds": near}})["entities"] == ["bot"]
         box = {"type": 1, "points": [{"x": 2.5, "y": -0.5}, {"x": 1.5, "y": -3.0}]}
@@ -171,6 +175,20 @@ def test_the_fields_are_those_of_version_2_1_0_of_the_standard(trial):
     assert code(time) == code(state) == 0
     assert {40, 44, 45, 50} <= set(features), "worlds, available worlds and several entities at once"
     assert {"person", "robot/pepper"} <= {row["entity_resource"]["uri"] for row in rows}
+
+
+def test_the_numbers_are_those_of_version_2_1_0_of_the_standard():
+    """Results, categories, bounds, scopes and states, from the files of the package."""
+    codes = (services.UNSUPPORTED, services.OK, services.NOT_FOUND, services.INCORRECT_STATE, services.FAILED)
+    assert codes == (0, 1, 2, 3, 4)
+    assert (services.ROBOT, services.HUMAN) == (1, 2)  # CATEGORY_ROBOT, CATEGORY_HUMAN
+    assert (services.BOX, services.SPHERE) == (1, 3)
+    assert (services.NAME_NOT_UNIQUE, services.NAME_INVALID, services.NO_RESOURCE) == (101, 102, 104)
+    assert (services.NAMESPACE_INVALID, services.PARSE_ERROR, services.INVALID_POSE) == (105, 106, 109)
+    assert (services.NO_WORLD_RESOURCE, services.WORLD_PARSE_ERROR) == (102, 103)
+    assert (services.TIME, services.STATE, services.SPAWNED, services.ALL) == (1, 2, 4, 255)
+    assert (services.INVALID_ENTITY_POSE, services.SPAWN_FAILED, services.SAME_STATE) == (101, 150, 101)
+    assert (STOPPED, PLAYING, PAUSED, QUITTING) == (0, 1, 2, 3)
 
 
 def test_a_reset_begins_the_same_run_again_in_another_file(trial, tmp_path):

@@ -47,7 +47,7 @@ def result(code: int = OK, message: str = "", **fields: Any) -> dict[str, Any]:
     return {"result": {"result": code, "error_message": message}, **fields}
 
 
-ROBOT, HUMAN = 2, 3
+ROBOT, HUMAN = 1, 2
 """Categories of ``simulation_interfaces/EntityCategory``."""
 BOX, SPHERE = 1, 3
 """Types of ``simulation_interfaces/Bounds`` that are supported, besides none."""
