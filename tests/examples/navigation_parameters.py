@@ -3,6 +3,8 @@
 NAV2_SOURCES = (
     "github.com/ros-navigation/navigation2, nav2_bringup/params/nav2_params.yaml,"
     " commits 00d26e079f333b791c9f3f33b4a4310e62bff0e5 (Humble) and 12936559e452d7785bdba7e448f69dbbb3e448e7 (Jazzy)",
+    "the same file and the calls that declare parameters in version 1.5.1, a6354f3f39d12c6e5c3e323f8021c831752edb23"
+    " (Lyrical)",
     "docs.nav2.org/configuration/packages: AMCL, costmap-plugins/static and obstacle",
     "docs.nav2.org/migration/Iron.html: enable_stamped_cmd_vel",
 )
@@ -93,6 +95,18 @@ COMMON = {
     "local_costmap/local_costmap": COSTMAP | SERVER,
     "global_costmap/global_costmap": COSTMAP | SERVER,
 }
+LATER_NAVIGATOR = (
+    NAVIGATOR
+    | SERVER
+    | {"wait_for_service_timeout", "navigators", "navigate_to_pose.plugin", "navigate_through_poses.plugin"}
+)
+LATER_CONTROLLER = CHECKERS | SERVER | {"progress_checker_plugins", "enable_stamped_cmd_vel"}
+LATER_BEHAVIORS = (
+    BEHAVIORS
+    | SERVER
+    | {"local_frame", "local_costmap_topic", "global_costmap_topic"}
+    | {"local_footprint_topic", "global_footprint_topic"}
+)
 NAV2 = {
     "humble": COMMON
     | {
@@ -102,18 +116,17 @@ NAV2 = {
     },
     "jazzy": COMMON
     | {
-        "bt_navigator": NAVIGATOR
-        | SERVER
-        | {"wait_for_service_timeout", "navigators", "error_code_names"}
-        | {"navigate_to_pose.plugin", "navigate_through_poses.plugin"},
-        "controller_server": CHECKERS
-        | SERVER
-        | {"progress_checker_plugins", "enable_stamped_cmd_vel"}
-        | {f"FollowPath.{name}" for name in MPPI},
-        "behavior_server": BEHAVIORS
-        | SERVER
-        | {"local_frame", "local_costmap_topic", "global_costmap_topic"}
-        | {"local_footprint_topic", "global_footprint_topic"},
+        "bt_navigator": LATER_NAVIGATOR | {"error_code_names"},
+        "controller_server": LATER_CONTROLLER | {f"FollowPath.{name}" for name in MPPI},
+        "behavior_server": LATER_BEHAVIORS,
+    },
+    "lyrical": COMMON
+    | {
+        "bt_navigator": LATER_NAVIGATOR | {"error_code_name_prefixes"},
+        "controller_server": LATER_CONTROLLER
+        | {"path_handler_plugins", "PathHandler.plugin", "PathHandler.prune_distance", "FollowPath.diff_drive.plugin"}
+        | {f"FollowPath.{name}" for name in MPPI - {"prune_distance", "transform_tolerance"}},
+        "behavior_server": LATER_BEHAVIORS,
     },
 }
 """Names of the parameters of each node, by distribution."""

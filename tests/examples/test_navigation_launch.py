@@ -21,7 +21,7 @@ FOLDER = ROOT / "examples" / "navigation_launch"
 sys.path.insert(0, str(ROOT / "tests" / "bridges"))
 from bridge_runs import MemoryTransport  # noqa: E402
 
-NAV2_FILES = ["humble", "jazzy"]
+NAV2_FILES = ["humble", "jazzy", "lyrical"]
 READ = """
 import json, sys
 import rclpy
@@ -131,6 +131,8 @@ def test_topics_frames_and_limits_of_nav2_are_those_of_the_bridge(distribution, 
     turn = control.get("FollowPath.max_vel_theta", control.get("FollowPath.wz_max"))
     limits = robot.drive
     assert (speed, turn) == (limits.max_speed, limits.max_turn_rate)
+    model = control.get("FollowPath.motion_model", "DiffDrive")  # a plugin since Lyrical
+    assert model == "DiffDrive" or f"FollowPath.{model}.plugin" in control
     assert found["velocity_smoother"]["max_velocity"] == [speed, 0.0, turn]
     for node, rows in found.items():
         for name, value in rows.items():
