@@ -16,6 +16,7 @@ import threading
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from crowdbot.bridges.fields import stamp_fields
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
 from crowdbot.bridges.transport import is_among
@@ -315,8 +316,7 @@ class ChallengeServer:
             input_topic.name == "/clock" for input_topic in self._inbox.interface.inputs
         ):
             target = round(request.clock * 1e9)
-            clock = {"sec": target // 10**9, "nanosec": target % 10**9}
-            self._inbox.receive("/clock", {"clock": clock}, self.name)
+            self._inbox.receive("/clock", {"clock": stamp_fields(target)}, self.name)
         with self._state:
             self._state.wait_for(lambda: self._ended or self._is_at(target), LATEST)
 

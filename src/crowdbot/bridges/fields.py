@@ -68,6 +68,15 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def stamp_fields(nanoseconds: int) -> dict[str, int]:
+    """Return the fields of a ``builtin_interfaces/Time`` or ``Duration`` [ns].
+
+    >>> stamp_fields(1_500_000_000)
+    {'sec': 1, 'nanosec': 500000000}
+    """
+    return {"sec": nanoseconds // 10**9, "nanosec": nanoseconds % 10**9}
+
+
 def memory_size(value: Any) -> int:
     """Return about how much memory a message or nested mapping takes [bytes].
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Order, VelocityOrder
 
 from .fields import memory_size
-from .interface import InputTopic, Request, RobotInterface, read_stamp
+from .interface import Fields, InputTopic, Request, RobotInterface, read_stamp
 from .run_control import CommandLatency
 
 SLOWEST, FASTEST = 0.001, 100.0
@@ -73,7 +73,6 @@ MOST_ORDERS, MOST_CALLS = 2000, 200
 MOST_MEMORY = 16 << 20
 """Memory [bytes] of the orders, and of the calls, that wait for the next step."""
 
-Fields = Mapping[str, Any]
 Answer = Callable[[dict[str, Any]], None]
 """Receives the fields of a response, or raises nothing if the caller has gone."""
 

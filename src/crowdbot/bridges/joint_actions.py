@@ -17,6 +17,7 @@ from crowdbot.core import InputError, did_you_mean
 from crowdbot.simulation import Simulation
 from crowdbot.world import joint_states, simulated_body
 
+from .fields import stamp_fields
 from .inbox import ServiceCall
 from .interface import Fields, read_duration, read_number, read_trajectory
 from .joint_trajectory import JointMotion, JointMotions, JointTrajectory
@@ -180,10 +181,10 @@ def _read(call: ServiceCall, robot: str) -> JointTrajectory:
 
 def _feedback(goal: _Goal, now: int, *rows: Any) -> dict[str, Any]:
     begin = min(int(motion.times[0]) for motion in goal.motions.values())
-    elapsed = {"sec": max(0, now - begin) // 10**9, "nanosec": max(0, now - begin) % 10**9}
+    elapsed = stamp_fields(max(0, now - begin))
     points = {
         name: {"positions": values[:, 0].tolist(), "velocities": values[:, 1].tolist(), "time_from_start": elapsed}
         for name, values in zip(("desired", "actual", "error"), rows, strict=True)
     }
-    header = {"stamp": {"sec": now // 10**9, "nanosec": now % 10**9}, "frame_id": ""}
+    header = {"stamp": stamp_fields(now), "frame_id": ""}
     return {"header": header, "joint_names": [*goal.trajectory.joints], **points}

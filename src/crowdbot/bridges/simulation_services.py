@@ -27,8 +27,9 @@ from crowdbot.simulation import (
 from crowdbot.trials import Trial, builtin_trials, check_trial, load_trial, parse_trial, trial_xml
 from crowdbot.world import builtin_robots, next_person
 
+from .fields import stamp_fields
 from .inbox import Inbox, ServiceCall
-from .interface import read_heading, read_number, read_point
+from .interface import Fields, read_heading, read_number, read_point
 from .run_control import PAUSED, PLAYING, QUITTING, STOPPED, RunControl
 
 UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
@@ -161,7 +162,7 @@ def state_of_entity(simulation: Simulation, entity: Entity) -> dict[str, Any]:
     half = 0.5 * float(scene.heading[0, slot])
     turn = float(world.twists[slot].turn[0]) if slot in world.twists else 0.0
     return {
-        "header": {"stamp": {"sec": now // 10**9, "nanosec": now % 10**9}, "frame_id": "map"},
+        "header": {"stamp": stamp_fields(now), "frame_id": "map"},
         "pose": {
             "position": {"x": x, "y": y, "z": 0.0},
             "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)},
@@ -376,7 +377,6 @@ SETS = ("set_pose", "set_twist", "set_acceleration")
 MOST_STEPS = 10_000_000
 ENDED = "the run has ended before the last step"
 
-Fields = Mapping[str, Any]
 Response = dict[str, Any] | None
 """Fields of a response, None if it is given later."""
 

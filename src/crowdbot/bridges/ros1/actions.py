@@ -10,8 +10,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from crowdbot.bridges.fields import stamp_fields
 from crowdbot.bridges.inbox import Inbox, ServiceCall
-from crowdbot.bridges.interface import COMMAND, STATE, InputTopic, JointAction, OutputTopic
+from crowdbot.bridges.interface import COMMAND, STATE, InputTopic, JointAction, OutputTopic, read_duration
 from crowdbot.bridges.joint_actions import ABORTED, CANCELED, INVALID_GOAL, REJECTED, SUCCEEDED, SUCCESSFUL, goal_end
 from crowdbot.core import InputError
 from crowdbot.messages import Ros1Messages
@@ -116,7 +117,7 @@ class ActionServer:
             self._end(goal, goal_end(CANCELED, SUCCESSFUL)["result"])
         if goal.state != PENDING or goal.call is not None:  # it was known
             return
-        if 0 < _time(fields["goal_id"]["stamp"]) <= self._canceled_until:
+        if 0 < read_duration(fields, "goal_id", "stamp") <= self._canceled_until:
             goal.state, goal.text = RECALLED, RECALLED_BY_TIME
             self._end(goal, goal_end(CANCELED, SUCCESSFUL)["result"])
             return
@@ -152,8 +153,8 @@ class ActionServer:
             InputError: there are too many goals.
         """
         stamp = identity["stamp"]
-        if not _time(stamp):
-            stamp = dict(zip(("sec", "nanosec"), divmod(self._inbox.now, 10**9), strict=True))
+        if not read_duration(identity, "stamp"):
+            stamp = stamp_fields(self._inbox.now)
         name = identity["id"]
         if not name:
             self._unnamed += 1
@@ -184,11 +185,11 @@ class ActionServer:
         Raises:
             InputError: there are too many goals.
         """
-        name, until = fields["id"], _time(fields["stamp"])
+        name, until = fields["id"], read_duration(fields, "stamp")
         everything = not name and not until
         self._canceled_until = max(self._canceled_until, until)
         for key, goal in self._goals.items():
-            if everything or key == name or (until > 0 and _time(goal.identity["stamp"]) <= until):
+            if everything or key == name or (until > 0 and read_duration(goal.identity, "stamp") <= until):
                 self._keep(goal)
                 if goal.call is not None and goal.state in (PENDING, ACTIVE):
                     goal.call.canceled, goal.state = True, RECALLING if goal.state == PENDING else PREEMPTING
@@ -197,11 +198,5 @@ class ActionServer:
         self._inbox.wake()
 
     def _publish(self, k: int, fields: dict[str, Any]) -> None:
-        seconds, rest = divmod(self._inbox.now, 10**9)
-        header = {"stamp": {"sec": seconds, "nanosec": rest}}
-        topic = self.outputs[k]
+        header, topic = {"stamp": stamp_fields(self._inbox.now)}, self.outputs[k]
         self._send(topic.name, self._codec.encode_fields({"header": header, **fields}, topic.kind))
-
-
-def _time(stamp: Mapping[str, Any]) -> int:
-    return int(stamp["sec"]) * 10**9 + int(stamp["nanosec"])
