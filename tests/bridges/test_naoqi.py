@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import qi
 from bridge_runs import MemoryTransport, Running, wait
-from partner_runs import OdometryMemory, recording_of, time_until_still
+from partner_runs import TEN_MINUTES, OdometryMemory, recording_of, time_until_still
 
 from crowdbot.bridges import BridgeClock, open_transport, run_bridge
 from crowdbot.bridges.naoqi import NaoqiBridge
@@ -179,11 +179,8 @@ def test_killed_simulations_leave_the_robot_its_own_values_and_a_recording_that_
             assert (len(episode.orders) > 0, episode.complete) == (True, False)
 
 
-THIRTY, TEN_MINUTES = pytest.param(30, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)
-
-
 @pytest.mark.live
-@pytest.mark.parametrize("seconds", [3, THIRTY, TEN_MINUTES])
+@pytest.mark.parametrize("seconds", [3, pytest.param(30, marks=pytest.mark.sweep), TEN_MINUTES])
 def test_a_control_loop_of_20_hz_loses_no_command(seconds):
     """The program on the robot reads its memory and commands another velocity in each period.
 
@@ -256,9 +253,7 @@ def pose_of(memory):
     return pose.position.x, pose.position.y, 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
 
 
-@pytest.mark.parametrize(
-    "seconds", [pytest.param(4, marks=pytest.mark.sweep), pytest.param(600, marks=pytest.mark.soak)]
-)
+@pytest.mark.parametrize("seconds", [pytest.param(4, marks=pytest.mark.sweep), TEN_MINUTES])
 def test_the_share_of_virtual_reads_stays_high(seconds):
     with FakeRobot() as robot:
         bridge = NaoqiBridge(robot.url)
