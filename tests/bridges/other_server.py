@@ -1,4 +1,4 @@
-"""A rosbridge server of others, without a simulation: ``python other_server.py PORT``. It prints ``ready``."""
+"""A rosbridge server of others, without a simulation: ``python other_server.py PORT``. It prints its port."""
 
 import sys
 import threading
@@ -14,7 +14,7 @@ def main():
     empty = RobotInterface(endless_trial(1.0), (), (), ())
     server = RosbridgeServer(port=int(sys.argv[1]))
     server.start(empty, Inbox(empty))
-    print("ready", flush=True)
+    print(server.port, flush=True)
     threading.Event().wait()
 
 
