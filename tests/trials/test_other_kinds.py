@@ -39,12 +39,46 @@ AREA = {"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 5], [0, 0]]]}
         ("a.csv", "id,time,x,y\n1,0.0,2,3\n", "is probably a recording of people, .*crowdbot predict --data"),
         ("a.txt", "0 1 2.5 3.5\n10 1 2.6 3.5\n", "is probably a recording of people"),
         ("a.bag", "#ROSBAG V2.0\n", "is probably a recording of people"),
+        ("hall.stl", "solid hall\n  facet normal 0 0 1\n", "is a mesh in STL; export it as binary glTF"),
+        ("hall.obj", "# Blender\n\nmtllib hall.mtl\no Cube\nv 1 1 -1\n", "is a mesh in OBJ"),
+        ("hall.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "is a mesh in OBJ"),
+        ("hall.pcd", "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n", "is a cloud of points or a mesh"),
+        ("hall.xml", "<!DOCTYPE html>\n<html lang='en'><head/></html>", "is a web page, perhaps about the file"),
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_read_says_what_it_is(tmp_path, name, content, words):
     (tmp_path / name).write_bytes(content.encode())
     with pytest.raises(TrialError, match=f"{name} .*{words}"):
         import_trial(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "begins"),
+    [
+        ("pyproject.toml", "[build-system]\nrequires = []\n", r"'\[build-system\]'"),
+        ("setup.cfg", "[metadata]\nname = hall\n", r"'\[metadata\]'"),
+        ("scene.xacro.j2", "{% for i in range(3) %}", "'{% for"),
+        ("poetry.toml", "name = 3\n", "'name = 3'"),
+        ("README.md", "\n# A hall\nSee a.xml, too.\n", "'# A hall'"),
+        ("run.sh", "#!/bin/sh\nexec crowdbot\n", "'#!/bin/sh'"),
+        ("hall.cpp", "#include <hall>\n", "'#include <hall>'"),
+        ("hall.rtf", "{\\rtf1 hall}", r"'{\\\\rtf1 hall}'"),
+        ("hall.so", "\x7fELF\x02\x01", r"'\\x7fELF"),
+    ],
+)
+def test_a_file_of_an_unknown_kind_is_named_as_such_with_the_kinds_that_are_imported(tmp_path, name, content, begins):
+    (tmp_path / name).write_bytes(content.encode())
+    with pytest.raises(
+        TrialError, match=f"{name} is of no kind that is imported, it begins with {begins}.*; scenes are"
+    ):
+        import_trial(tmp_path / name)
+
+
+@pytest.mark.parametrize("content", ['{"scenario": ', "[1,", '{"a": 1}, 2', "{\n  // a scene\n  scenario", '[\n  "a"'])
+def test_damaged_json_is_named_as_json(tmp_path, content):
+    (tmp_path / "a.scenario").write_text(content)
+    with pytest.raises(TrialError, match="is not JSON: "):
+        import_trial(tmp_path / "a.scenario")
 
 
 WALL = (

@@ -19,7 +19,7 @@ from .irsim import import_irsim, is_irsim
 from .jupedsim import import_jupedsim
 from .menge import import_menge
 from .original import ImportedTrial, import_original
-from .other_kinds import describe_binary, describe_json, describe_xml, keys_of
+from .other_kinds import describe_binary, describe_json, describe_text, describe_xml, is_json_text, keys_of
 from .pedsim import import_pedsim
 from .umans import import_umans
 from .vadere import import_vadere
@@ -66,7 +66,7 @@ def import_trial(
         raise TrialError(f"{path}: layers and units belong to drawings in DXF, and this is none")
     if path.suffix.lower() in (".yaml", ".yml") or b"hunav_loader" in data[:10_000]:
         return _import_yaml(path)
-    if data[:1] in (b"{", b"["):
+    if is_json_text(data) or path.suffix.lower() == ".json":
         return _import_json(path)
     if data[:1] == b"<":
         tag = _root_of(path, data)
@@ -80,6 +80,8 @@ def import_trial(
                 " or Experiment, of the CrowdBot simulator Trial or Config"
             )
     _refuse(path, describe_binary(path, data))
+    if data[:1] != b"<":
+        _refuse(path, describe_text(data))
     return import_original(path, root=root)
 
 

@@ -25,6 +25,16 @@ BEGINNINGS = (
     (re.compile(rb"\x89PNG|\xff\xd8\xff|P[1-6]\s|BM"), "{picture}"),
     (re.compile(rb"BLENDER|Kaydara FBX"), "is a 3D scene of an editor; export it as binary glTF (.glb)"),
     (re.compile(rb"#usda|PXR-USDC"), "is a scene in USD, which is not read; export it as binary glTF (.glb)"),
+    (re.compile(rb"solid\b[^\n]*\n\s*facet\b"), "is a mesh in STL; export it as binary glTF (.glb) and import that"),
+    (
+        re.compile(rb"(?:[ \t]*(?:#[^\n]*)?\n)*(?:mtllib|[ogv])[ \t][^\n]*\n[ \t]*(?:usemtl|[ogsvf]|v[nt])[ \t]"),
+        "is a mesh in OBJ; export it as binary glTF (.glb) and import that",
+    ),
+    (
+        re.compile(rb"ply\r?\n|(?:#[^\n]*\n)*VERSION [^\n]*\nFIELDS "),
+        "is a cloud of points or a mesh (PLY, PCD), which is not read; give its walls as a map of ROS, as ASCII DXF or"
+        " as binary glTF (.glb)",
+    ),
 )  # fmt: skip
 RECORDING = (
     "is probably a recording of people, not a scene: read it by crowdbot predict --data, or make a trial of it by"
@@ -39,13 +49,22 @@ ROOTS = {
     "COLLADA": "is a mesh in COLLADA; export it as binary glTF (.glb) and import that",
     "kml": "is a map in KML, which is not read; write the free area as GeoJSON in metres",
     "launch": "is a launch file of ROS; import the world that it names",
+    "html": "is a web page, perhaps about the file; download the file itself",
     "trial": "is a trial of crowdbot already; copy it by crowdbot new trial FILE --from",
     "mujoco": "is a model of MuJoCo, which is not read; a robot needs URDF or SDF, a scene a world of Gazebo or IR-SIM",
     "JPSreport": "is the settings of JPSreport; import the geometry that it names",
     "routing": "is a routing file of JuPedSim; import its project or geometry",
 }  # fmt: skip
 """Root elements of XML files that no importer reads."""
+KINDS = (
+    "scenes are imported from Vadere and Arena-Rosnav (JSON), HuNavSim and IR-SIM (YAML), UMANS, pedsim, Gazebo,"
+    " JuPedSim and Menge (XML), drawings in ASCII DXF, buildings in binary glTF (.glb), and trials and orders of the"
+    " CrowdBot simulator"
+)
+TRIAL_NAME = re.compile(r"[^;,<>]*\.xml\s*(?:[;,]|$)", re.IGNORECASE)
+"""The first line of an order of the CrowdBot simulator: a file of a trial, and perhaps more columns."""
 MOST_KEYS = 8
+JSON = re.compile(rb"\{\s*(?:[\"}]|//|$)|\[\s*(?:[\"{\[\]\d+-]|//|$|true\b|false\b|null\b)")
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
@@ -64,6 +83,24 @@ def _is_row(line: str) -> bool:
     """Whether a line has three numbers or more, as tables of positions have."""
     words = re.split(r"[\s,;]+", line.strip())
     return len(words) > 2 and sum(NUMBER.fullmatch(word) is not None for word in words) > 2
+
+
+def describe_text(data: bytes) -> str:
+    """Return that a file is of no kind that is imported; empty if it can be an order of the CrowdBot simulator."""
+    lines = [line.strip() for line in data[:65_536].decode("utf-8", "replace").splitlines() if line.strip()]
+    if lines and TRIAL_NAME.match(lines[0]):
+        return ""
+    begins = f"begins with {lines[0][:30]!r}" if lines else "is empty"
+    return f"is of no kind that is imported, it {begins}; {KINDS}"
+
+
+def is_json_text(data: bytes) -> bool:
+    """Whether a text begins as JSON does, unlike the sections of TOML and INI files or the templates of Jinja.
+
+    >>> is_json_text(b'{"scenario": 1}'), is_json_text(b"[1, 2]"), is_json_text(b"[project]"), is_json_text(b"{% if %}")
+    (True, True, False, False)
+    """
+    return JSON.match(data) is not None
 
 
 def describe_xml(root: str) -> str:
