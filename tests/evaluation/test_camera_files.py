@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from crowdbot.core import DataError, InputError
+from crowdbot.evaluation.tracking import camera_files
 from crowdbot.evaluation.tracking.camera_files import read_camera, read_odometry
 
 CAMERA = """image_width: 640
@@ -46,6 +47,17 @@ def test_wrong_calibrations_are_told(old: str, new: str, words: str, tmp_path: P
     file.write_text(CAMERA.replace(old, new, 1))
     with pytest.raises(DataError, match=words):
         read_camera(file)
+
+
+@pytest.mark.parametrize("end", ["", "\n", "\n\n# the end\n"])
+def test_odometry_beyond_the_limit_of_rows_is_told(end: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "odometry.csv"
+    file.write_text(ODOMETRY.rstrip() + end)
+    monkeypatch.setattr(camera_files, "MOST_ROWS", 20)
+    assert len(read_odometry(file).time) == 20
+    monkeypatch.setattr(camera_files, "MOST_ROWS", 19)
+    with pytest.raises(DataError, match="odometry.csv has more than 19 rows of odometry, the limit; split it in time"):
+        read_odometry(file)
 
 
 def mutated(text: str, rng: random.Random) -> str:

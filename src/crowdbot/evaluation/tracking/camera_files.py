@@ -148,8 +148,11 @@ def _read_rows(path: Path, names: tuple[str, ...], what: str) -> Floats:
             columns = [head.index(name) for name in names]
             filled = (line for line in lines if line.partition("#")[0].strip())  # NumPy warns of rows without data
             rows = np.loadtxt(filled, delimiter=",", usecols=columns, ndmin=2, max_rows=MOST_ROWS)
+            more = next(filled, None) is not None
     except (OSError, ValueError) as error:
         raise DataError(f"{path} cannot be read as {what}: {error}") from None
+    if more:
+        raise DataError(f"{path} has more than {MOST_ROWS} rows of {what}, the limit; split it in time")
     if not len(rows) or not np.isfinite(rows).all():
         raise DataError(f"{path}: {what} need rows of finite numbers")
     return rows
