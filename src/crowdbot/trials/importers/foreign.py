@@ -11,6 +11,7 @@ from crowdbot.trials.xml.trial_text import read_trial_bytes
 
 from .arena import import_arena, is_arena
 from .building import import_building, is_building
+from .clear_places import clear_places
 from .dxf import import_dxf, is_dxf
 from .foreign_text import json_of, xml_of, yaml_of
 from .gazebo import import_gazebo
@@ -51,10 +52,18 @@ def import_trial(
         root: project folder of the CrowdBot simulator, see :func:`import_original`.
         layers, unit: layers and unit of a drawing, see :func:`import_dxf`.
 
+    People, robots and zones without room are moved, cut or left out, see :mod:`.clear_places`.
+
     Raises:
         TrialError: the file is missing, malformed or of another kind.
     """
-    path = Path(path)
+    done = _import(Path(path), root, layers, unit)
+    notes = dict.fromkeys(done.left_out)
+    trials = [(name, clear_places(trial, lambda note: notes.update({note: None}))) for name, trial in done.trials]
+    return ImportedTrial(tuple(trials), tuple(notes))
+
+
+def _import(path: Path, root: str | Path | None, layers: Collection[str], unit: str) -> ImportedTrial:
     if is_building(path):
         if layers or unit:
             raise TrialError(f"{path}: layers and units belong to drawings in DXF, and this is none")
