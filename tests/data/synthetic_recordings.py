@@ -189,6 +189,19 @@ def sdd_annotations(path: Path) -> None:
     path.write_text("".join(lines), encoding="utf-8")
 
 
+def cvml_boxes(path: Path) -> None:
+    """Write CVML at 25 Hz: boxes with feet of 20 pixels per metre, and a group that is no person."""
+    by_frame: dict[int, list[str]] = {}
+    for frame, id, x, y in rows(25.0):
+        box = f'<box xc="{20 * x + 400:.4f}" yc="{20 * y + 360:.4f}" w="20" h="80"/>'
+        by_frame.setdefault(frame, []).append(f'<object id="{id}"><orientation>90</orientation>{box}</object>')
+    text = '<?xml version="1.0" encoding="UTF-8"?>\n<!-- hall --><dataset name="square">\n'
+    for frame, objects in sorted(by_frame.items()):
+        group = '<grouplist><group id="1"><box xc="1" yc="1" w="3" h="3"/></group></grouplist>'
+        text += f'<frame number="{frame}"><objectlist>{"".join(objects)}</objectlist>{group}</frame>\n'
+    path.write_text(text + "</dataset>\n", encoding="utf-8")
+
+
 def petrack_metres(path: Path) -> None:
     """Write a PeTrack file in metres at 25 fps with a header."""
     head = "# PeTrack project: synthetic.pet\n# framerate: 25 fps\n# id frame x/m y/m z/m\n"
@@ -472,6 +485,7 @@ SYNTHETIC = {
     "episode.mcap": Synthetic("episode", episode, 1, 10.0, robots=frozenset({ROBOT})),
     "bag.db3": Synthetic("rosbag2", bag("sqlite3"), 1, 10.0, robots=frozenset({PEOPLE + 1})),
     "bag.bag": Synthetic("rosbag1", bag("ros1"), 1, 10.0, robots=frozenset({PEOPLE + 1})),
+    "cvml.xml": Synthetic("cvml", cvml_boxes, 1, 25.0, "px", (20.0, 20.0), options=(("fps", 25.0),)),
     "mot.txt": Synthetic("mot", mot_boxes, 1, 25.0, "px", (20.0, 20.0)),
     "kitti.txt": Synthetic("kitti", kitti_labels, 1, 10.0),
     "square.traj": Synthetic("vadere", vadere_footsteps, 1, 2.5),

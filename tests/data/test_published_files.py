@@ -205,6 +205,7 @@ def saved(array: np.ndarray) -> bytes:
         (b"\x89PNG\r\n\x1a\n" + bytes(50), "is a picture"),
         (bytes(4) + b"ftypisom" + bytes(50), "is a video; people in it are found by crowdbot track --video"),
         (b'<?xml version="1.0"?>\n<dataset name="x">\n<frame number="1"/></dataset>', "is XML of <dataset>"),
+        (b"<viper>\n<config/>\n</viper>", "is XML of <viper>; recordings in XML are those of CVML"),
         (b'{"info": {}, "annotations": [{"bbox": [1, 2]}]}', "is JSON with info, annotations, bbox, but recordings"),
         (b"[[1, 2], [3, 4]]", "is JSON, but recordings"),
     ],
@@ -214,6 +215,65 @@ def test_files_of_other_kinds_say_what_they_are(content: bytes, words: str, tmp_
     file.write_bytes(content)
     with pytest.raises(DataError, match=words):
         load(file)
+
+
+def cvml(frames: list[str], root: str = "dataset", name: str = "objectlist") -> str:
+    rows = "".join(f'<frame number="{k}"><{name}>{text}</{name}></frame>\n' for k, text in enumerate(frames))
+    return f"<?xml version='1.0' encoding='ISO-8859-1'?>\n<{root} name='a'>\n{rows}</{root}>\n"
+
+
+def walker(id: object, k: int, more: str = "") -> str:
+    return f'<object id="{id}">{more}<box h="60" w="20" xc="{100 + 3 * k}" yc="70.5"/></object>'
+
+
+CAVIAR = "<orientation>20</orientation><body><left xc='1' yc='2'/></body><appearance>visible</appearance>"
+
+
+@pytest.mark.parametrize(
+    ("root", "name", "more", "alone"),
+    [
+        ("dataset", "objectlist", "", False),
+        ("result", "objectlist", "", False),
+        ("dataset", "object_list", CAVIAR, False),
+        ("dataset", "objectlist", "", True),
+        ("dataset", "objectlist", '<confidence value="0.5"/>', False),
+    ],
+)
+def test_cvml_boxes_have_their_feet_as_places(root: str, name: str, more: str, alone: bool, tmp_path: Path) -> None:
+    frames = [walker(7, k, more) + ("" if alone else walker(0, -k)) for k in range(30)]
+    frames[4] += '<object id="9"/>'
+    file = tmp_path / "gt.xml"
+    file.write_text(cvml(frames, root, name))
+    with pytest.raises(DataError, match="has no frame rate"):
+        load(file)
+    tracks = load(file, fps=25.0)
+    assert (tracks.ids.tolist(), tracks.units, tracks.dt) == ([7] if alone else [0, 7], "px", 0.04)
+    assert tracks.track(7).position[5].tolist() == [115.0, 100.5]
+    assert "1 objects without a box are left out" in tracks.note
+    assert load(file, fps=25.0, transform=0.02).track(7).x[5] == pytest.approx(2.3)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('xc="103"', 'xc="left"', "gt.xml line 4: xc='left' of <box> is not a number"),
+        (' h="60"', "", "line 3: h='' of <box> is not a number"),
+        ('id="7"', 'id="ann"', "line 3: id='ann' of <object> is not a number"),
+        ('id="7"', 'id="7.5"', "line 3"),
+        ('number="2"', 'number=""', "line 5: number='' of <frame> is not a number"),
+        ('number="2"', 'number="1"', "line"),
+        ('xc="103"', 'xc="1e999"', "line 4"),
+        ("</dataset>", "", "line .*: this is not well-formed XML: no element found"),
+        ("<dataset", "<!DOCTYPE a [<!ENTITY b 'c'>]>\n<dataset", "gt.xml has a DOCTYPE"),
+        ("<box", "<bax", "has no objects with a box in its 30 frames"),
+    ],
+)
+def test_damaged_cvml_names_the_line(old: str, new: str, words: str, tmp_path: Path) -> None:
+    file = tmp_path / "gt.xml"
+    text = cvml([walker(7, k) for k in range(30)])
+    file.write_text(text.replace(old, new) if old == "<box" else text.replace(old, new, 1))
+    with pytest.raises(DataError, match=words):
+        load(file, fps=25.0)
 
 
 def test_a_speed_of_pixels_names_the_scale(tmp_path: Path) -> None:

@@ -16,8 +16,8 @@ def files(tmp_path_factory):
     return write_all(tmp_path_factory.mktemp("synthetic"))
 
 
-SHIFTS = {"annotations.txt": (400 / 30, -400 / 30), "mot.txt": (20.25, 22.0), "tracks.01Sep.txt": (20.0, 20.0),
-          "grand-central/000001.txt": (20.0, 20.0)}  # fmt: skip
+SHIFTS = {"annotations.txt": (400 / 30, -400 / 30), "mot.txt": (20.25, 22.0), "cvml.xml": (20.0, 20.0),
+          "tracks.01Sep.txt": (20.0, 20.0), "grand-central/000001.txt": (20.0, 20.0)}  # fmt: skip
 """Metres between the origin of a picture and that of the walkers."""
 FROM_FIRST_ROW = ("times.csv", "occupants.csv", "square.pp", "atc-20121024.csv")
 """Files of times, whose frames begin with 0 at the first row."""

@@ -189,7 +189,7 @@ def test_importing_the_room_is_light():
 
 
 def test_every_format_says_what_it_is():
-    assert len(FORMATS) == 27
+    assert len(FORMATS) == 28
     assert all(about and not about.endswith(".") for about in FORMATS.values())
 
 

@@ -34,7 +34,7 @@ from .readers.plausibility import check_walkers
 from .readers.reader import Reader, ReadOptions
 from .readers.ros import episode
 from .readers.time_base import check_fps
-from .readers.video import boxes, pixel_tracks
+from .readers.video import boxes, cvml, pixel_tracks
 from .source import Source
 from .trajectories import Trajectories
 
@@ -53,6 +53,7 @@ _READERS: tuple[Reader, ...] = (
     ucy.READER,
     lcas.READER,
     tables.ATC,
+    cvml.READER,
     boxes.SDD,
     boxes.KITTI,
     boxes.MOT,

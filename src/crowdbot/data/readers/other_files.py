@@ -44,7 +44,8 @@ def describe(source: Source) -> str:
     first = source.lines[0].lstrip()
     if first.startswith("<"):
         root = next((found[1] for line in source.lines[:50] for found in XML_ROOT.finditer(line)), "")
-        return f"is XML{f' of <{root}>' if root else ''}, and no recordings are read from XML; {TABLE}"
+        held = f" of <{root}>" if root else ""
+        return f"is XML{held}; recordings in XML are those of CVML (frame, objectlist, object, box); {TABLE}"
     if first[0] in "{[":
         keys = list(dict.fromkeys(JSON_KEY.findall("\n".join(source.lines[:200]))))[:MOST_KEYS]
         held = f" with {', '.join(keys)}" if keys else ""
