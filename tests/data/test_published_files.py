@@ -217,6 +217,84 @@ def test_files_of_other_kinds_say_what_they_are(content: bytes, words: str, tmp_
         load(file)
 
 
+def tracker(row: str) -> str:
+    """Rows of two people at frames 0 to 29, one 700 px and one 900 px from the left."""
+    return "".join(
+        row.format(f=k, id=id, x=x + 3 * k, y=200, r=x + 3 * k + 20, b=260, n=k / 30) + "\n"
+        for k in range(30)
+        for id, x in ((1, 700), (2, 900))
+    )
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        "{f},{id},{x},{y},20,60,0.9,0",
+        "{f},{id},{x}.25,{y},20,60,0.{id}5,-1",
+        "{f},{id},{x},{y},20,60,0.8",
+        "{f}, {id}, {x}, {y}, {r}, {b}, 0.85, 0",
+        "{f},{id},{x},{y},{r},{b},1",
+        "{f},{id},{x},{y},{r},{b},0.5,2",
+    ],
+)
+def test_boxes_of_trackers_are_no_millimetres(row: str, tmp_path: Path) -> None:
+    """Eight columns with commas are those of the ATC shopping centre, too."""
+    file = tmp_path / "bytetrack.txt"
+    file.write_text(tracker(row))
+    tracks = load(file, fps=30.0)
+    assert (tracks.ids.tolist(), tracks.units, len(tracks)) == ([1, 2], "px", 60)
+    assert tracks.track(1).position[2] == pytest.approx([716.0, 260.0], abs=0.3)
+    assert ("right and bottom" in tracks.note) == ("{r}" in row)
+
+
+@pytest.mark.parametrize("begin", [1_351_039_200.0, 1000.0, 5.5])
+def test_days_of_the_atc_shopping_centre_are_millimetres(begin: float, tmp_path: Path) -> None:
+    file = tmp_path / "atc.csv"
+    file.write_text("".join(f"{begin + k / 25:.3f},9,{1000 + 40 * k},2000,1700,1000,0.1,0.2\n" for k in range(50)))
+    assert (load(file).units, load(file).x[1]) == ("m", pytest.approx(1.04))
+
+
+def kitti(boxes: str, place: str, score: str = "") -> str:
+    rows = (
+        f"{k} {id} Pedestrian 0 0 -1 {boxes.format(x=x + 3 * k, r=x + 3 * k + 40)} {place.format(x=0.1 * k)}{score}\n"
+        for k in range(30)
+        for id, x in ((1, 700), (2, 900))
+    )
+    return "".join(rows)
+
+
+SIZES, ENDS = "{x} 100 40 160", "{x} 100 {r} 260"
+
+
+@pytest.mark.parametrize(
+    ("boxes", "place", "score"),
+    [
+        (SIZES, "-1 -1 -1 -1 -1 -1 -1", " 1.00"),
+        (SIZES, "0 0 0 -1000 -1000 -1000 -10", ""),
+        (ENDS, "-1 -1 -1 -1 -1 -1 -1", ""),
+        (ENDS, "1.7 0.6 0.6 -1000 -1000 -1000 -10", " 0.5"),
+        (ENDS, "0 0 0 0 0 0 0", ""),
+    ],
+)
+def test_kitti_results_without_places_are_feet_of_boxes(boxes: str, place: str, score: str, tmp_path: Path) -> None:
+    file = tmp_path / "0000.txt"
+    file.write_text(kitti(boxes, place, score))
+    tracks = load(file)
+    assert (tracks.units, tracks.track(2).position[1].tolist()) == ("px", [923.0, 260.0])
+    assert "the file has no places" in tracks.note
+    assert ("width and height" in tracks.note) == (boxes == SIZES)
+
+
+def test_kitti_rows_without_a_place_are_left_out(tmp_path: Path) -> None:
+    file = tmp_path / "0000.txt"
+    lost = "3 7 Pedestrian 0 0 -1 1 1 9 9 1.7 0.6 0.6 -1000 -1000 -1000 -10\n"
+    file.write_text(kitti(ENDS, "1.7 0.6 0.6 {x} 1.6 5 0.1") + lost)
+    tracks = load(file)
+    assert (tracks.units, tracks.ids.tolist(), sorted(tracks.labels)) == ("m", [1, 2], [1, 2])
+    assert tracks.track(1).position[10] == pytest.approx([5.0, -1.0])
+    assert "1 rows without a place are left out" in tracks.note
+
+
 def cvml(frames: list[str], root: str = "dataset", name: str = "objectlist") -> str:
     rows = "".join(f'<frame number="{k}"><{name}>{text}</{name}></frame>\n' for k, text in enumerate(frames))
     return f"<?xml version='1.0' encoding='ISO-8859-1'?>\n<{root} name='a'>\n{rows}</{root}>\n"

@@ -54,6 +54,8 @@ OWN_ID = "id of the file"
 """Column that is added to tables of one person."""
 ONE_PERSON = "no column of ids and ascending times: all rows are of one person"
 LAST_NUMBER = re.compile(r"\d{1,15}(?=\D*$)")
+EPOCH = 1e8
+"""Smallest time in seconds since 1970 of a recording: 1973."""
 ATC_COLUMNS = {"time": "1", "id": "2", "x": "3", "y": "4"}
 NAME = re.compile(r"^[A-Za-z_][\w .:/()\[\]-]*$")
 
@@ -166,11 +168,16 @@ def _atc(source: Source) -> tuple[Columns, dict[str, Any], NDArray[np.int64]]:
 
 
 def sniff_atc(source: Source) -> bool:
-    """Return whether the first rows have eight numbers with commas, of which the last two can be angles [rad]."""
+    """Return whether the first rows have eight numbers with commas: a time in seconds, no frame, and angles [rad] last.
+
+    Boxes of trackers have eight columns, too, of which the first counts frames.
+    """
     if not source.lines or source.lines[0].count(",") != 7 or not source.numeric(8):
         return False
     values = np.asarray(source.rows, dtype=np.float64)
-    whole = bool(np.all(values[:, 1] == np.rint(values[:, 1])))
+    whole, frames = (bool(np.all(values[:, k] == np.rint(values[:, k]))) for k in (1, 0))
+    if frames and np.max(values[:, 0]) < EPOCH:
+        return False
     return whole and bool(np.all(np.abs(values[:, 6:]) <= 2.0 * np.pi) and np.max(np.abs(values[:, 2:4])) > 100.0)
 
 

@@ -7,8 +7,11 @@ Dataset are seen from above, their position is the center.
   "label".
 * MOT Challenge (Milan et al., 2016): frame, id, left, top, width, height, confidence, then either class and visibility,
   or x, y, z in the world, which are -1 where they are unknown. ``seqinfo.ini`` beside the folder has the frame rate.
+  Trackers write it without the columns at the end, too, or with the class last, and with right, bottom instead of width
+  and height.
 * KITTI tracking labels, 10 Hz (Geiger et al., CVPR 2012): frame, id, type, truncated, occluded, alpha, left, top,
   right, bottom, height, width, length, x, y, z, rotation; x, y, z are coordinates of the camera [m], which moves.
+  Results without places, and boxes with width and height instead of right and bottom, as JRDB has them, are read.
 """
 
 from __future__ import annotations
@@ -36,9 +39,16 @@ MOT_CLASSES = (
 )  # fmt: skip
 """Classes of MOT Challenge by number; those from 8 on are no road users."""
 MOST_CLASS = 7
+MOT_COLUMNS = (7, 8, 9, 10)
+SMALLEST_BOX = 5.0
+"""Smallest height [px] of boxes in files with fewer columns: speeds in m/s are lower."""
+STANDARD = 9
+"""Columns of ground truth: those of trackers are fewer, or ten."""
 KITTI_COLUMNS = (17, 18)
 """Columns of KITTI labels; results have a score at the end."""
 UNKNOWN = -1.0
+NO_PLACE = (UNKNOWN, -1000.0, 0.0)
+"""Values of x, y and z where there are none."""
 KITTI_TYPES = frozenset(
     ("Car", "Van", "Truck", "Pedestrian", "Person", "Person_sitting", "Cyclist", "Tram", "Misc", "DontCare")
 )
@@ -94,21 +104,24 @@ def _check_labels(name: str, label: Floats, count: int, line: NDArray[np.int64])
 
 
 def sniff_mot(source: Source) -> bool:
-    """Return whether the first rows have 9 or 10 numbers with commas: frame, id and a box of positive size."""
+    """Return whether the first rows have 7 to 10 numbers with commas: frame, id, a box of positive size, confidence."""
     if not source.lines or "," not in source.lines[0]:
         return False
-    if not any(source.numeric(columns) for columns in (9, 10)):
+    if not any(source.numeric(columns) for columns in MOT_COLUMNS):
         return False
     rows = [list(map(float, row)) for row in source.rows]
-    return all(row[0].is_integer() and row[1].is_integer() and row[4] > 0.0 and row[5] > 0.0 for row in rows)
+    scored = len(rows[0]) >= STANDARD or all(
+        row[6] <= 1.0 and row[-1] >= UNKNOWN and row[5] >= SMALLEST_BOX for row in rows
+    )
+    return scored and all(row[0].is_integer() and row[1].is_integer() and row[4] > 0.0 and row[5] > 0.0 for row in rows)
 
 
 def read_mot(source: Source, options: ReadOptions) -> Trajectories:
     """Read the feet of all boxes in pixels, or the places in the world if every row has one."""
     width = len(source.rows[0]) if source.rows else 10
     values, line = source.table(width)
-    known = values[:, 6] != 0.0 if width == 9 else np.ones(len(values), dtype=np.bool_)
-    if width == 9:  # rows with the flag 0 are not to be counted
+    known = values[:, 6] != 0.0 if width == STANDARD else np.ones(len(values), dtype=np.bool_)
+    if width == STANDARD:  # rows with the flag 0 are not to be counted
         known &= (values[:, 7] >= 1.0) & (values[:, 7] <= MOST_CLASS)
     values, line = values[known], line[known]
     if len(values) == 0:
@@ -117,12 +130,20 @@ def read_mot(source: Source, options: ReadOptions) -> Trajectories:
         raise DataError(f"{source.name}: the id of all rows is {values[0, 1]:g}, these are detections without tracks")
     x, y, units = values[:, 2] + 0.5 * values[:, 4], values[:, 3] + values[:, 5], "px"
     note = "feet of boxes in pixels"
-    if width == 10 and options.units is None and not np.any((values[:, 7] == -1.0) & (values[:, 8] == -1.0)):
+    if width < STANDARD and np.all(values[:, 4:6] > values[:, 2:4]):
+        # with sizes, the boxes of some row begin farther from the corner of the picture than their own size
+        x, y = 0.5 * (values[:, 2] + values[:, 4]), values[:, 5]
+        note += "; the columns 5 and 6 are right and bottom, as they are above left and top in all rows"
+    elif width == 10 and options.units is None and not np.any((values[:, 7] == -1.0) & (values[:, 8] == -1.0)):
         x, y, units, note = values[:, 7], values[:, 8], "m", "places in the world, columns 8 and 9"
     id = integers(values[:, 1], "id", source.name, line)
     ids, first = np.unique(id, return_index=True)
-    labels = {key: MOT_CLASSES[int(values[row, 7])] for key, row in zip(ids.tolist(), first, strict=True)}
     left_out = int(np.sum(~known))
+    labels = (
+        {key: MOT_CLASSES[int(values[row, 7])] for key, row in zip(ids.tolist(), first, strict=True)}
+        if width == STANDARD
+        else {}
+    )
     return assemble(
         source,
         options,
@@ -134,7 +155,7 @@ def read_mot(source: Source, options: ReadOptions) -> Trajectories:
         units=units,
         note=note + (f"; {left_out} rows that do not count are left out" if left_out else ""),
         line=line,
-        labels=labels if width == 9 else {},
+        labels=labels,
     )
 
 
@@ -171,7 +192,7 @@ def read_kitti(source: Source, options: ReadOptions) -> Trajectories:
         if len(words) not in KITTI_COLUMNS:
             raise DataError(f"{source.name} line {number} has {len(words)} columns, KITTI labels have 17")
         try:
-            row = [float(word) for word in (*words[:2], *words[6:10], words[13], words[15])]
+            row = [float(word) for word in (*words[:2], *words[6:10], words[13], words[15], words[14])]
             has_boxes = has_boxes or any(float(word) != UNKNOWN for word in words[6:13])
         except ValueError:
             raise DataError(f"{source.name} line {number}: a column other than the type is not a number") from None
@@ -185,15 +206,26 @@ def read_kitti(source: Source, options: ReadOptions) -> Trajectories:
     fps: float | None = KITTI_FPS
     note = "feet of boxes in pixels; 10 Hz is assumed, as in KITTI; fps overrides this"
     x, y, units = 0.5 * (values[:, 2] + values[:, 4]), values[:, 5], "px"
+    sizes = bool(has_boxes and np.any(values[:, 4:6] <= values[:, 2:4]))
+    if sizes:
+        x, y = values[:, 2] + 0.5 * values[:, 4], values[:, 3] + values[:, 5]
+        note += "; the columns 9 and 10 are width and height, as some are below left and top"
+    placed = ~np.any([np.all(values[:, 6:9] == none, axis=1) for none in NO_PLACE], axis=0)
     if not has_boxes:
         x, y, fps, units = values[:, 6], values[:, 7], None, "m"
         note = "places of the columns 14 (x) and 16 (y), there are no boxes"
+    elif options.units is None and not np.any(placed):
+        note += "; the file has no places"
     elif options.units is None:
+        if lost := int(np.sum(~placed)):
+            values, lines = values[placed], [number for number, there in zip(lines, placed, strict=True) if there]
+            kinds = {id: kind for id, kind in kinds.items() if np.any(values[:, 1] == id)}
         x, y, units = values[:, 7], -values[:, 6], "m"
         note = (
             "warning: positions are relative to the camera, which moves with the car, x forward and y to the left;"
             " 10 Hz is assumed, as in KITTI, fps overrides this"
         )
+        note += f"; {lost} rows without a place are left out" if lost else ""
     return assemble(
         source, options, id=values[:, 1], frame=values[:, 0], x=x, y=y, fps=fps, units=units, note=note,
         line=np.asarray(lines), frame_step=1, labels=kinds,
