@@ -15,6 +15,7 @@ from crowdbot.trials import (
     Obstacle,
     RobotGoal,
     RobotSpec,
+    Routing,
     SourceSpec,
     Spawner,
     Stage,
@@ -66,9 +67,7 @@ def test_a_person_in_a_wall_is_moved_to_the_nearest_place_with_room(x, y, place)
     after, (note,) = cleared(before)
     assert math.dist(after.agents[0].position, place) < 0.04
     assert after.agents[1] == before.agents[1]
-    assert note.startswith(
-        "1 person stands in walls, robots or each other, moved to the nearest place with room"
-    )
+    assert note.startswith("1 person stands in walls, robots or each other, moved to the nearest place with room")
     assert note.endswith(": ann")
 
 
@@ -177,6 +176,41 @@ def test_goals_of_people_are_moved_and_cut_off_solids():
     assert math.dist((point.x, point.y), (5, 2)) < 1.1
     assert min(x for x, _ in zone.points) == pytest.approx(6.001)
     assert [note.split(", and is ")[1] for note in notes] == [f"moved to {point.x:.3g},{point.y:.3g}", "cut there"]
+
+
+@pytest.mark.parametrize("kind", ["agents", "spawners", "sources"])
+def test_goals_without_room_are_left_out(kind):
+    """The middle of a block of 8 m x 8 m is farther than 2 m from its sides."""
+    block = Obstacle([(4, 1), (12, 1), (12, 9), (4, 9)])
+    lost, zone, kept = Point(8, 5, 0.3), Zone([(7, 4), (8, 4), (8, 5), (7, 5)]), Point(2, 8, 0.3)
+    ways = [
+        Journey(name="none", stops=(lost, zone), then="leave"),
+        Journey(name="one", stops=(lost, kept), then="leave"),
+    ]
+    people = {
+        "agents": lambda way, k: Agent(name=way, x=1 + k, y=1, journey=way),
+        "spawners": lambda way, k: Spawner(name=way, count=2, zone=BOX, journey=way),
+        "sources": lambda way, k: SourceSpec(name=way, zone=BOX, journey=way, rate=0.5),
+    }[kind]
+    stage = Stage(obstacles=[block])
+    before = trial(stage=stage, journeys=ways, **{kind: [people(way.name, k) for k, way in enumerate(ways)]})
+    after, notes = cleared(before)
+    assert [way.stops for way in after.journeys] == [(kept,)]
+    assert [one.journey for one in getattr(after, kind)] == (["one"] if kind == "sources" else ["", "one"])
+    assert "a goal at 8,5 lies in a solid, and is left out, without room" in notes
+
+
+@pytest.mark.parametrize(("rows", "routed"), [(10, True), (20, False)])
+def test_too_many_corners_for_routes_are_told(rows, routed):
+    posts = [
+        Obstacle([(x, y), (x + 0.1, y), (x + 0.1, y + 0.1), (x, y + 0.1)]) for x in range(rows) for y in range(rows)
+    ]
+    before = trial(stage=Stage(obstacles=posts), routing=Routing(radius=0.2), agents=[agent("ann", 0.5, 0.5)])
+    after, notes = cleared(before)
+    assert (after.routing is not None) == routed
+    assert [note[:60] for note in notes] == (
+        [] if routed else ["people find no ways around walls, and walk straight to their"]
+    )
 
 
 PEDSIM = """<scenario>

@@ -309,24 +309,55 @@ def test_arena_has_people_and_robots_and_names_what_it_lacks(tmp_path):
         "the static obstacle 'shelf1' (model shelf) is not imported, since its size is not in the file; add its"
         " outline as <obstacle> around (13.0, 11.0)",
         "'door' (interactive) is not imported",
-        "the map 'hall' is not beside the scenario as hall/map.yaml or hall.yaml: the stage has no walls, add them",
+        "the map 'hall' is not beside the scenario as hall/map.yaml or hall.yaml, nor in the folder above: the stage "
+        "has no walls, add them",
     ):
         assert sentence in done.left_out
 
 
-@pytest.mark.parametrize("place", ["hall/map.yaml", "hall.yaml"])
-def test_the_map_of_arena_beside_the_scenario_is_the_stage(tmp_path, place):
-    file = tmp_path / place
-    file.parent.mkdir(exist_ok=True)
+def write_map(file):
+    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text("image: hall.pgm\nresolution: 0.5\norigin: [-20, -20, 0]\n")
     (file.parent / "hall.pgm").write_bytes(b"P5 80 80 255\n" + b"\x00" * 80 + b"\xfe" * (79 * 80))
-    done = imported(tmp_path, "scenario.json", ARENA)
-    trial = trial_of(done)
-    assert trial.stage.map == place
-    assert trial.stage.clearance([(0.0, 0.0)])[0] == pytest.approx(19.5, abs=0.6)
+
+
+@pytest.mark.parametrize(
+    ("scenario", "place", "name"),
+    [
+        ("hall.json", "hall/map.yaml", "hall/map.yaml"),
+        ("hall.json", "hall.yaml", "hall.yaml"),
+        ("worlds/hall/scenarios/1.json", "worlds/hall/map/map.yaml", "map/map.yaml"),
+        ("worlds/hall/scenarios/1.json", "worlds/hall/scenarios/hall.yaml", "hall.yaml"),
+        ("setup/scenarios/1.json", "setup/maps/hall/map.yaml", "maps/hall/map.yaml"),
+    ],
+)
+def test_the_map_of_arena_is_the_stage_and_copied_to_the_trial(tmp_path, scenario, place, name, capsys):
+    write_map(tmp_path / place)
+    file = tmp_path / scenario
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(ARENA)
+    out = tmp_path / "mine" / "ward.xml"
+    out.parent.mkdir()
+    assert main(["new", "trial", str(out), "--import", str(file)]) == 0
+    assert f"copied {name} to the folder of the trial" in capsys.readouterr().out
+    stage = load_trial(out).stage
+    assert (stage.map, (out.parent / name).read_text()[:5]) == (name, "image")
+    assert stage.clearance([(0.0, 0.0)])[0] == pytest.approx(19.5, abs=0.6)
+    done = import_trial(file)
+    assert trial_of(done).stage.map == name
     assert not any("the map" in sentence for sentence in done.left_out)
-    written = f"the stage reads {place} in the folder of the trial: write the trial beside the scenario"
-    assert written in done.left_out
+    home = (tmp_path / place.removesuffix(name)).resolve()
+    assert f"the stage reads {name} in the folder of the trial, a copy of that in {home}" in done.left_out
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_the_map_of_another_world_is_not_taken(tmp_path, named):
+    """A scenario that names no map has that of its world."""
+    write_map(tmp_path / "other" / "map" / "map.yaml")
+    (tmp_path / "other" / "scenarios").mkdir()
+    file = tmp_path / "other" / "scenarios" / "1.json"
+    file.write_text(ARENA if named else ARENA.replace('"map": "hall"', '"resets": 0'))
+    assert trial_of(import_trial(file)).stage.map == ("" if named else "map/map.yaml")
 
 
 @pytest.mark.parametrize(
@@ -363,8 +394,8 @@ def test_the_map_of_arena_beside_the_scenario_is_the_stage(tmp_path, place):
             '"map": "hall"',
             '"map": "../../etc/hall"',
             1,
-            "the map '../../etc/hall' is not beside the scenario as ../../etc/hall/map.yaml or ../../etc/hall.yaml: the"
-            " stage has no walls, add them",
+            "the map '../../etc/hall' is not beside the scenario as ../../etc/hall/map.yaml or ../../etc/hall.yaml, nor"
+            " in the folder above: the stage has no walls, add them",
         ),
     ],
 )

@@ -247,6 +247,8 @@ def _import_trials(options: argparse.Namespace) -> None:
         file = options.file if single else options.file.with_stem(f"{options.file.stem}-{k + 1:02d}-{Path(name).stem}")
         if trial.stage.building and _copy_beside(options.original, file.parent / options.original.name):
             print(COPIED.format(options.original.name))
+        for copy in _copy_map(trial, file.parent):
+            print(COPIED.format(copy))
         _write(file, trial_xml(trial))
         print(f"wrote {file}")
         try:
@@ -258,6 +260,19 @@ def _import_trials(options: argparse.Namespace) -> None:
             print(f"{title}:")
             for sentence in rows:
                 print(f"  - {sentence}")
+
+
+def _copy_map(trial: Trial, folder: Path) -> list[str]:
+    """Copy the files of the map of an imported trial to its folder; return the names of those that were not there."""
+    from crowdbot.trials import map_files
+
+    if not trial.stage.map:
+        return []
+    copied = []
+    for name, path in map_files(trial.stage.map, trial.stage.folder, trial.stage.trust).items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        copied += [name] if _copy_beside(path, folder / name) else []
+    return copied
 
 
 def _write(file: Path, content: str | bytes) -> None:

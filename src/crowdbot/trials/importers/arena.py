@@ -44,7 +44,7 @@ def import_arena(path: str | Path) -> ImportedTrial:
     """Read a scenario of Arena-Rosnav (JSON).
 
     The map is named in the scenario. It is imported if its ROS map (``MAP.yaml`` or ``MAP/map.yaml``) is beside the
-    scenario.
+    scenario, or in the folder of the world above it (``map/map.yaml``).
 
     Raises:
         TrialError: the file is missing or malformed, or nothing in it can be imported.
@@ -87,29 +87,39 @@ def _trial(scene: ImportedScene, whole: dict[str, Any]) -> ImportedTrial:
         scene.robot(x, y, goal, heading=_third(row, "start", "robot"))
     if whole.get("resets"):
         scene.note("resets of the scenario are not imported: a trial runs once for each seed")
-    return scene.trial(map=_map(scene, whole))
+    name, folder = _map(scene, whole)
+    return scene.trial(map=name, folder=folder)
 
 
-def _map(scene: ImportedScene, whole: dict[str, Any]) -> str:
-    """The ROS map beside the scenario, empty with a note if there is none."""
-    name = whole.get("map") or whole.get("map_path")
-    if not name:
-        return ""
-    name = str(name).strip()[:200]
+def _map(scene: ImportedScene, whole: dict[str, Any]) -> tuple[str, Path | None]:
+    """The ROS map of the scenario and the folder that has it; empty with a note if there is none.
+
+    It is beside the scenario, or where Arena-Rosnav has it: ``worlds/MAP/map`` beside ``worlds/MAP/scenarios``, also
+    if the scenario names none, or ``maps/MAP`` beside ``scenarios``.
+    """
     folder = scene.path.resolve().parent
+    in_world = folder.name == "scenarios" and (folder.parent / "map" / "map.yaml").is_file()
+    name = whole.get("map") or whole.get("map_path") or (folder.parent.name if in_world else "")
+    if not name:
+        return "", None
+    name = str(name).strip()[:200]
     names = [name] if name.endswith((".yaml", ".yml")) else [f"{name}/map.yaml", f"{name}.yaml"]
-    for item in (*names, *(file.rpartition("/")[2] for file in names)):
+    places = [(folder, item) for item in (*names, *(file.rpartition("/")[2] for file in names))]
+    if folder.parent.name == name:
+        places.append((folder.parent, "map/map.yaml"))
+    places.append((folder.parent, f"maps/{name}/map.yaml"))
+    for home, item in places:
         try:
-            map_files(item, folder, trust=False)
+            map_files(item, home, trust=False)
         except InputError:
             continue
-        scene.note(f"the stage reads {item[:80]} in the folder of the trial: write the trial beside the scenario")
-        return item
+        scene.note(f"the stage reads {item[:80]} in the folder of the trial, a copy of that in {home}")
+        return item, home
     scene.note(
-        f"the map {name[:60]!r} is not beside the scenario as {' or '.join(name[:80] for name in names)}: the stage has"
-        " no walls, add them"
+        f"the map {name[:60]!r} is not beside the scenario as {' or '.join(name[:80] for name in names)}, nor in the"
+        " folder above: the stage has no walls, add them"
     )
-    return ""
+    return "", None
 
 
 def _rows(scene: ImportedScene, whole: dict[str, Any], key: str) -> list[dict[str, Any]]:

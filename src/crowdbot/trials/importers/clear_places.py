@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 import shapely
 
+from crowdbot.core import InputError
 from crowdbot.core.fields import Points
 from crowdbot.trials.agent import Agent
+from crowdbot.trials.crowd import Routing
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.population import gap_to_disc, place
 from crowdbot.trials.placement.spawn_placement import OccupiedDiscs
@@ -39,6 +41,8 @@ OVERLAP = 1e-9
 SMALLEST = 0.05
 """Smallest area [m2] of what is left of a zone."""
 MOST_NAMES = 5
+MANY_EDGES = 1000
+"""Edges of walls above which routes are tried; a router takes seconds there."""
 
 
 def clear_places(trial: Trial, note: Note) -> Trial:
@@ -46,18 +50,42 @@ def clear_places(trial: Trial, note: Note) -> Trial:
     room = _Room(trial.stage)
     robots = _robots(room, trial.robots, note)
     agents = _agents(room, trial.agents, robots, note)
-    journeys = tuple(
-        dataclasses.replace(journey, stops=tuple(_stop(room, stop, note) for stop in journey.stops))
+    ways = {
+        journey.name: tuple(kept for stop in journey.stops if (kept := _stop(room, stop, note)) is not None)
         for journey in trial.journeys
+    }
+    journeys = tuple(
+        dataclasses.replace(journey, stops=ways[journey.name]) for journey in trial.journeys if ways[journey.name]
     )
+    agents = tuple(_on_its_way(agent, ways, note) for agent in agents)
     spawners, sources = (
-        tuple(kept for item in items if (kept := _off_exits(item, trial, room, note)) is not None)
+        tuple(
+            _on_its_way(kept, ways, note)
+            for item in items
+            if ways.get(item.journey, True) or isinstance(item, Spawner)
+            if (kept := _off_exits(item, trial, room, note)) is not None
+        )
         for items in (trial.spawners, trial.sources)
     )
     moved = dataclasses.replace(
         trial, robots=robots, agents=agents, journeys=journeys, spawners=spawners, sources=sources
     )
-    return dataclasses.replace(moved, spawners=_as_many_as_fit(moved, note))
+    return dataclasses.replace(moved, spawners=_as_many_as_fit(moved, note), routing=_possible_routing(trial, note))
+
+
+def _possible_routing(trial: Trial, note: Note) -> Routing | None:
+    """The routing of a trial; None if its walls have too many corners for it."""
+    if trial.routing is None:
+        return None
+    walls = trial.stage.walking_walls()
+    if len(walls.segments()) > MANY_EDGES:
+        try:
+            trial.routing.router(walls)
+        except InputError as error:
+            why = str(error).removeprefix("Router: ")
+            note(f"people find no ways around walls, and walk straight to their goals: {why}")
+            return None
+    return trial.routing
 
 
 class _Room:
@@ -185,20 +213,29 @@ def _names(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + more
 
 
+def _on_its_way(item: Any, ways: dict[str, tuple[Any, ...]], note: Note) -> Any:
+    """A person or spawner, who stands if all stops of the journey are left out."""
+    if ways.get(item.journey, True):
+        return item
+    note(f"{item.name} has no goal that can be reached, and stands")
+    return dataclasses.replace(item, journey="", **({"stands": True} if isinstance(item, Spawner) else {}))
+
+
 def _stop(room: _Room, stop: Any, note: Note) -> Any:
-    """A stop of a journey off the solids."""
+    """A stop of a journey off the solids; None without room near it."""
     if isinstance(stop, Point) and (
         _in_block(room, (stop.x, stop.y)) or not room.stage.holds(shapely.Point(stop.x, stop.y))
     ):
         there = room.nearest((stop.x, stop.y), 0.0, FARTHEST)
-        if there is not None:
-            note(f"a goal at {_at((stop.x, stop.y))} lies in a solid, and is moved to {_at(there)}")
-            return dataclasses.replace(stop, x=there[0], y=there[1])
+        end = "left out, without room" if there is None else f"moved to {_at(there)}"
+        note(f"a goal at {_at((stop.x, stop.y))} lies in a solid, and is {end}")
+        return None if there is None else dataclasses.replace(stop, x=there[0], y=there[1])
     if isinstance(stop, Zone):
         cut = _cut(stop.points, room.blocks)
-        if cut is not None and cut != stop.points:
-            note(f"a goal zone around {_at(_middle(stop.points))} reaches into a solid, and is cut there")
-            return dataclasses.replace(stop, points=cut)
+        if cut != stop.points:
+            end = "left out, without room" if cut is None else "cut there"
+            note(f"a goal zone around {_at(_middle(stop.points))} reaches into a solid, and is {end}")
+            return None if cut is None else dataclasses.replace(stop, points=cut)
     return stop
 
 

@@ -229,7 +229,14 @@ class ImportedScene:
         )
 
     def trial(
-        self, *, duration: float | None = None, step: float = 0.05, crowd: CrowdModel | None = None, map: str = ""
+        self,
+        *,
+        duration: float | None = None,
+        step: float = 0.05,
+        crowd: CrowdModel | None = None,
+        map: str = "",
+        area: str = "",
+        folder: Path | None = None,
     ) -> ImportedTrial:
         """The trial of the scene with its notes.
 
@@ -237,13 +244,15 @@ class ImportedScene:
             duration: longest time [s]; 120 s with a note if None.
             step: time step [s].
             crowd: crowd model (default: social force).
-            map: ROS map beside the file.
+            map: ROS map in the folder.
+            area: walkable area as WKT.
+            folder: folder of the map (default: that of the file).
 
         Raises:
             TrialError: nothing is left of the file.
         """
         people = bool(self.people or self.spawners or self.sources)
-        if not (self.walls or self.obstacles or people or self.robots or map):
+        if not (self.walls or self.obstacles or people or self.robots or map or area):
             why = "".join(f"; {sentence}" for sentence in list(self.notes)[:3])
             raise self.error(f"there are no solids, people or robots that can be imported{why}")
         if duration is None:
@@ -252,10 +261,11 @@ class ImportedScene:
             self.note("people are not in the file: add them")
         if not self.robots:
             self.note("robots are not in the file: people react to the robots that you add")
-        folder = self.path.resolve().parent
-        solid = bool(self.walls or self.obstacles or map)
+        folder = folder or self.path.resolve().parent
+        solid = bool(self.walls or self.obstacles or map or area)
+        walls, obstacles = tuple(self.walls), tuple(self.obstacles)
         try:
-            stage = Stage(walls=tuple(self.walls), obstacles=tuple(self.obstacles), map=map, folder=folder, trust=False)
+            stage = Stage(walls=walls, obstacles=obstacles, map=map, area=area, folder=folder, trust=False)
         except InputError as error:
             raise self.error(str(error)) from None
         trial = Trial(
