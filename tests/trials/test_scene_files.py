@@ -284,6 +284,26 @@ def test_random_worlds_of_irsim_are_drawn_once(tmp_path):
         imported(tmp_path, "world.yaml", IRSIM + crowd.replace("[3, 4, 0]", "[33, 4, 0]"))
 
 
+@pytest.mark.parametrize(
+    ("number", "kinematics", "extra", "people"),
+    [(100, "omni", "", 0), (101, "omni", "", 1), (130, "diff", "", 30), (200, "omni", "behavior: {name: orca}", 100),
+     (150, "acker", "group_behavior: {name: orca, maxSpeed: 1.5}", 50)],
+)  # fmt: skip
+def test_robots_of_irsim_beyond_a_hundred_are_people(tmp_path, number, kinematics, extra, people):
+    text = (
+        "world: {height: 290, width: 290, offset: [-140, -140]}\nrobot:\n"
+        f"  - number: {number}\n    kinematics: {{name: '{kinematics}'}}\n    shape: {{name: circle, radius: 0.4}}\n"
+        f"    distribution: {{name: circle, radius: 140}}\n    vel_max: [2, 2]\n    {extra}\n"
+    )
+    done = imported(tmp_path, "world.yaml", text)
+    trial = trial_of(done)
+    check_trial(trial)
+    assert (len(trial.robots), len(trial.agents)) == (number - people, people)
+    told = [note for note in done.left_out if note.startswith("a trial has at most 100 robots: the other")]
+    assert [note.split()[9] for note in told] == ([str(people)] if people else [])
+    assert all((agent.radius, agent.speed) == (0.4, 2.0) and agent.journey for agent in trial.agents)
+
+
 def test_people_on_a_circle_of_irsim_walk_across(tmp_path):
     text = IRSIM.replace(
         "    state: [2, 8, 0]\n    goal: [[9, 8], [9, 10], [2, 8]]\n", "    number: 4\n    distribution: circle\n"

@@ -111,6 +111,8 @@ class ImportedScene:
     robots: list[RobotSpec] = field(default_factory=list)
     journeys: dict[tuple[Any, str], Journey] = field(default_factory=dict)
     corners: int = 0
+    beyond: int = 0
+    """Robots beyond the largest number of a trial."""
 
     def note(self, sentence: str) -> None:
         """Note what is not imported, or imported in another way; each sentence once."""
@@ -203,12 +205,15 @@ class ImportedScene:
         speed: float = 1.0,
         drive: Drive | None = None,
     ) -> None:
-        """Add a robot with ORCA; without a goal it has one 1 m ahead."""
+        """Add a robot with ORCA; without a goal it has one 1 m ahead. Robots beyond the hundredth are people."""
         from crowdbot.navigation import ORCANavigator
         from crowdbot.world import DifferentialDrive
 
         if len(self.robots) >= MOST_ROBOTS:
-            raise self.error(f"more than {MOST_ROBOTS} robots are too many")
+            self.beyond += 1
+            stops = [] if goal is None else self.points([goal])
+            self.person(f"robot{MOST_ROBOTS + self.beyond}", x, y, stops, heading=heading, speed=speed, radius=radius)
+            return
         self.note("robots are discs with the navigator ORCA: give the type and the navigator of yours")
         name = f"robot{len(self.robots) + 1}" if self.robots else "robot"
         speed = min(SPEEDS[1], max(SPEEDS[0], speed))
@@ -257,6 +262,11 @@ class ImportedScene:
             raise self.error(f"there are no solids, people or robots that can be imported{why}")
         if duration is None:
             self.note(f"no end by time is in the file: the trial ends after {DURATION:g} s")
+        if self.beyond:
+            self.note(
+                f"a trial has at most {MOST_ROBOTS} robots: the other {self.beyond} are people of the crowd model, of"
+                " the same size and speed"
+            )
         if not people:
             self.note("people are not in the file: add them")
         if not self.robots:
