@@ -20,6 +20,10 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
         ("<robot", "urdf:1: this is not well-formed XML: unclosed token"),
         ("<machine/>", "urdf:1: the root element is <machine>, expected <robot>"),
         ("<robot name='r'/>", "urdf:1: <robot> contains no <link>; a robot needs at least one"),
+        (
+            robot("<link name='a'><visual><geometry><sphere/></geometry></visual></link>"),
+            "<sphere> needs the attribute 'radius', a number; RViz, Gazebo and MuJoCo refuse this, too",
+        ),
         (robot("<link/>"), "urdf:2: <link> needs the attribute 'name'"),
         (robot(A, A), "urdf:3: <link> 'a' has a name that is already in use"),
         (robot(A, B), "<robot> the links 'a' and 'b' are both the root: no joint has them as a child"),

@@ -76,6 +76,7 @@ def _color(reader: UrdfReader, material: Element) -> Color | None:
 
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
+OTHERS_REFUSE = "RViz, Gazebo and MuJoCo refuse this, too: write its size, or leave out the <visual> or <collision>"
 THINNEST = 1e-9
 """Smallest length [m] of a shape."""
 
@@ -148,6 +149,10 @@ def _parse_shape(reader: UrdfReader, geometry: Element, collision: bool) -> Shap
             reader.say(element, f'size="{element.attributes["size"][:40]}" must be at least {THINNEST:g} m')
             return None
         return Box((float(sides[0]), float(sides[1]), float(sides[2])))
+    if element.tag == "sphere" and "radius" not in element.attributes:
+        # urdfdom, PyBullet and MuJoCo refuse the robot, too: a sphere has no usual size
+        reader.say(element, f"needs the attribute 'radius', a number; {OTHERS_REFUSE}")
+        return None
     radius = _length(reader, element, "radius")
     if element.tag == "sphere":
         return Sphere(radius) if radius else None
