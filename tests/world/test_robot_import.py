@@ -220,6 +220,26 @@ def test_message_and_radiation_decide_the_kind_of_a_ray_sensor(tmp_path, kind, s
     assert (made.range_max, made.rate) == (4.0, 10.0)
 
 
+IMU_TAG = (
+    "<gazebo reference='base_link'><sensor name='imu{}' type='imu'><update_rate>50</update_rate></sensor></gazebo>"
+)
+LASER_TAG = RAY.format(name="last", kind="ray", samples=90, low=-1.0, high=1.0, vertical="", plugin="")
+
+
+@pytest.mark.parametrize(("inertial", "laser"), [(3, False), (50, False), (51, False), (78, False), (60, True)])
+def test_a_robot_has_as_many_sensors_as_a_trial_takes(tmp_path, inertial, laser, capsys):
+    """Sensors of surroundings stay, such as the scanner of the base; iCub has 78 inertial sensors."""
+    file = base_file("differential")
+    root = "base_link" if "'base_link'" in file or '"base_link"' in file else "base"
+    tags = "".join(IMU_TAG.format(k).replace("base_link", root) for k in range(inertial)) + LASER_TAG * laser
+    robot = Robot.load(convert(tmp_path, file.replace("</robot>", f"{tags}</robot>")))
+    names = [mount.name for mount in robot.mounts]
+    assert len(names) == min(50, 1 + inertial + laser)
+    assert ("scan" in names, "last" in names) == (True, laser)
+    told = f"{1 + inertial + laser} sensors, a robot has at most 50"
+    assert (told in capsys.readouterr().out) == (1 + inertial + laser > 50)
+
+
 def test_a_folder_is_not_replaced_by_mistake(tmp_path, capsys):
     folder = convert(tmp_path, base_file("differential"))
     file = tmp_path / "maker.urdf.xacro"

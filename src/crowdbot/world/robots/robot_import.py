@@ -406,19 +406,31 @@ def _steering(done: _Conversion) -> tuple[float, str, str]:
     return 0.6, "common value" + ("; <limit> of the steering joints allows no motion" if locked else ""), GUESS
 
 
+MOST_SENSORS = 50
+"""Largest number of sensors of a robot in a trial."""
+BODY_SENSORS = ("imu", "bumper", "joint-states", "wheel-odometry")
+"""Sensors of the robot itself, which are left out first."""
+
+
 def _sensor_elements(done: _Conversion, root: Element, source: Element) -> None:
     """Add the sensors of Gazebo tags, and those that links are named after."""
     change, model = "<sensor> in robot.xml", done.model
     sensors = find_sensors(source)
+    usable = [item for item in sensors if item.attributes and (item.link or model.root) in model.links]
+    kept = sorted(usable, key=lambda item: item.attributes["type"] in BODY_SENSORS)[:MOST_SENSORS]
     for item in sensors:
         link = item.link or model.root
+        if item in usable and not any(item is other for other in kept):
+            why = f"{len(usable)} sensors, a robot has at most {MOST_SENSORS}"
+            done.table.add(f"sensor {item.name}", "left out", f"{item.source}; {why}", change, DERIVED)
+            continue
         if not item.attributes or link not in model.links:
             why = "there is no such link" if item.attributes else "its type is not supported"
             done.table.add(f"sensor {item.name}", "left out", f"{item.source}; {why}", change, DERIVED)
             continue
         root.children.append(Element("sensor", {"name": item.name, "link": link} | item.attributes))
         done.table.add(f"sensor {item.name}", item.attributes["type"], item.source, change)
-    for sensor in guess_sensors(tuple(model.links), sensors):
+    for sensor in guess_sensors(tuple(model.links), sensors)[: MOST_SENSORS - len(kept)]:
         root.children.append(Element("sensor", {"name": sensor.name, "link": sensor.link} | sensor.attributes))
         done.table.add(f"sensor {sensor.name}", sensor.attributes["type"], sensor.source, change, GUESS)
     if not root.each("sensor"):
