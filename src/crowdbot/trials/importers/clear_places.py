@@ -38,7 +38,7 @@ SEEDS = 5
 """Placements at random that must have room for all people of a zone."""
 OVERLAP = 1e-9
 """Overlap [m2] of zones that only touch."""
-SMALLEST = 0.05
+SMALLEST = 0.01
 """Smallest area [m2] of what is left of a zone."""
 MOST_NAMES = 5
 MANY_EDGES = 1000
@@ -94,6 +94,7 @@ class _Room:
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
         solids, ground = stage.shapes
+        self.ground = ground
         self.blocks = [solid for solid in solids if solid.geom_type == "Polygon"]
         lines = [solid.exterior if solid.geom_type == "Polygon" else solid for solid in solids]
         borders = [] if ground is None else [ground.boundary]
@@ -231,7 +232,7 @@ def _stop(room: _Room, stop: Any, note: Note) -> Any:
         note(f"a goal at {_at((stop.x, stop.y))} lies in a solid, and is {end}")
         return None if there is None else dataclasses.replace(stop, x=there[0], y=there[1])
     if isinstance(stop, Zone):
-        cut = _cut(stop.points, room.blocks)
+        cut = _cut(stop.points, room.blocks, room.ground)
         if cut != stop.points:
             end = "left out, without room" if cut is None else "cut there"
             note(f"a goal zone around {_at(_middle(stop.points))} reaches into a solid, and is {end}")
@@ -243,15 +244,18 @@ def _off_exits(item: Any, trial: Trial, room: _Room, note: Note) -> Any:
     """A spawner or source whose zone does not overlap exits; None without room beside them."""
     exits = [area(way.zone) for way in trial.exits]
     source = isinstance(item, SourceSpec)
-    cut = _cut(item.zone, [*exits, *(room.blocks if source else [])])
+    cut = _cut(item.zone, [*exits, *(room.blocks if source else [])], room.ground)
     if cut == item.zone:
         return item
+    inside = room.ground is None or room.ground.covers(area(item.zone))
     what = "exits or solids" if source else "exits"
+    what = what if inside else f"{what} or outside the walkable area"
     if cut is None:
-        note(f"the zone of {item.name} lies in {what}, where people would leave at once, and is left out")
+        why = ", where people would leave at once," if inside and not source else ""
+        note(f"the zone of {item.name} lies in {what}{why or ','} and is left out")
         return None
     before, after = area(item.zone).area, area(cut).area
-    why = "" if source else ", where people would leave at once"
+    why = "" if source or not inside else ", where people would leave at once"
     note(f"the zone of {item.name} reaches into {what}{why}: it is cut from {before:.3g} to {after:.3g} m2")
     return dataclasses.replace(item, zone=cut)
 
@@ -283,15 +287,29 @@ def _in_block(room: _Room, spot: Spot) -> bool:
     return bool(room.stage.block_around(shapely.Point(spot)))
 
 
-def _cut(points: Points, solids: Sequence[Any]) -> Points | None:
-    """The largest part of a polygon outside others, as corners; None if less than ``SMALLEST`` is left."""
+def _cut(points: Points, solids: Sequence[Any], ground: Any = None) -> Points | None:
+    """The largest part of a polygon outside others and on the ground, as corners; None if there is hardly any.
+
+    Args:
+        points: corners of the polygon.
+        solids: polygons that it must not overlap.
+        ground: the walkable area, None for everywhere.
+    """
     zone = area(points)
     if not zone.is_valid:
         return points
+    if ground is not None and not ground.buffer(OVERLAP).covers(zone):
+        inside = _largest(zone.intersection(ground.buffer(-MARGIN, join_style="mitre")))
+        return None if inside is None else _cut(inside, solids)
     near = [solid.buffer(MARGIN, join_style="mitre") for solid in solids if zone.intersection(solid).area > OVERLAP]
     if not near:
         return points
-    rest = max(_without_holes(zone.difference(shapely.union_all(near))), key=lambda part: part.area, default=None)
+    return _largest(zone.difference(shapely.union_all(near)))
+
+
+def _largest(shape: Any) -> Points | None:
+    """Corners of the largest polygon of a shape; None if it has less than ``SMALLEST``."""
+    rest = max(_without_holes(shape), key=lambda part: part.area, default=None)
     if rest is None or rest.area < SMALLEST:
         return None
     return Points.of([(round(x, 6), round(y, 6)) for x, y in rest.simplify(0.0).exterior.coords[:-1]])

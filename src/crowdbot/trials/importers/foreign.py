@@ -18,6 +18,7 @@ from .gazebo import import_gazebo
 from .hunavsim import import_hunavsim
 from .irsim import import_irsim, is_irsim
 from .jupedsim import import_jupedsim
+from .jupedsim_editor import import_jupedsim_editor, is_editor
 from .menge import import_menge
 from .original import ImportedTrial, import_original
 from .other_kinds import describe_binary, describe_json, describe_text, describe_xml, is_json_text, keys_of
@@ -46,9 +47,9 @@ def import_trial(
 
     Args:
         path: a Vadere scenario (JSON), a UMANS ``Simulation``, a pedsim ``scenario``, an agent file of HuNavSim
-            (YAML), a world of IR-SIM (YAML), a scenario of Arena-Rosnav (JSON), a world of Gazebo (SDF), a project or
-            geometry of JuPedSim (XML), a project or scene of Menge (XML), a drawing (ASCII DXF), a building
-            (``.glb``), or as in :func:`import_original`.
+            (YAML), a world of IR-SIM (YAML), a scenario of Arena-Rosnav or of the JuPedSim editor (JSON), a world of
+            Gazebo (SDF), a project or geometry of JuPedSim (XML), a project or scene of Menge (XML), a drawing (ASCII
+            DXF), a building (``.glb``), or as in :func:`import_original`.
         root: project folder of the CrowdBot simulator, see :func:`import_original`.
         layers, unit: layers and unit of a drawing, see :func:`import_dxf`.
 
@@ -111,11 +112,14 @@ def _import_json(path: Path) -> ImportedTrial:
     content = json_of(path)
     if is_arena(content):
         return import_arena(path)
+    if is_editor(content):
+        return import_jupedsim_editor(path)
     _refuse(path, describe_json(path, content))
     if not isinstance(content, dict) or not {"scenario", "topography"} & set(content):
         raise TrialError(
             f"{path} is not a JSON scene that can be imported, {keys_of(content)}; scenarios of Vadere have scenario"
-            " with topography, those of Arena-Rosnav have obstacles and robots"
+            " with topography, those of Arena-Rosnav have obstacles and robots, those of the JuPedSim editor"
+            " distributions and exits"
         )
     return import_vadere(path)
 

@@ -57,9 +57,9 @@ ROOTS = {
 }  # fmt: skip
 """Root elements of XML files that no importer reads."""
 KINDS = (
-    "scenes are imported from Vadere and Arena-Rosnav (JSON), HuNavSim and IR-SIM (YAML), UMANS, pedsim, Gazebo,"
-    " JuPedSim and Menge (XML), drawings in ASCII DXF, buildings in binary glTF (.glb), and trials and orders of the"
-    " CrowdBot simulator"
+    "scenes are imported from Vadere, Arena-Rosnav and the JuPedSim editor (JSON), HuNavSim and IR-SIM (YAML), UMANS,"
+    " pedsim, Gazebo, JuPedSim and Menge (XML), drawings in ASCII DXF, buildings in binary glTF (.glb), and trials and"
+    " orders of the CrowdBot simulator"
 )
 TRIAL_NAME = re.compile(r"[^;,<>]*\.xml\s*(?:[;,]|$)", re.IGNORECASE)
 """The first line of an order of the CrowdBot simulator: a file of a trial, and perhaps more columns."""
@@ -117,11 +117,6 @@ def describe_json(path: Path, content: Any) -> str:
         return f"is an area in GeoJSON; {AREA.format(name=path.name)}"
     if {"image", "resolution"} <= keys:
         return f'is a map of ROS; a trial names it itself: <stage map="{path.name}"/>'
-    if {"distributions", "exits"} <= keys or "simulation_settings" in keys:
-        return (
-            "is a scenario of the JuPedSim editor, which is not read; its geometry.wkt is the stage, "
-            '<stage area="geometry.wkt"/>, to which you add people and exits'
-        )
     if {"asset", "scenes"} <= keys or {"asset", "meshes"} <= keys:
         return "is glTF as text; export it as binary glTF (.glb) and import that"
     if {"type", "CityObjects"} <= keys:
