@@ -58,3 +58,26 @@ def test_boxes_of_whole_pixels_do_not_stand_still(tmp_path: Path) -> None:
 def test_speeds_of_pedestrians_are_still_checked(street: Path) -> None:
     assert "check the frame rate (fps) and the units" in load(street, transform=0.5).note
     assert "check fps" not in load(street, transform=0.05).note
+
+
+@pytest.mark.parametrize("kind", ["Misc", "Truck", "Tram", "Van", "Cyclist", "Car"])
+def test_other_types_of_kitti_are_no_people(kind: str, tmp_path: Path) -> None:
+    """Of KITTI's types, Pedestrian, Person and Person_sitting are people."""
+    types = ("Pedestrian", "Person", "Person_sitting", kind)
+    rows = (
+        f"{k} {id} {name} 0 0 -1 {100 * id + k} 100 {100 * id + 40} 260 1.7 0.6 0.6 {0.1 * k} 1.6 {5 + id} 0.1\n"
+        for k in range(30)
+        for id, name in enumerate(types)
+    )
+    file = tmp_path / "0000.txt"
+    file.write_text("".join(rows))
+    tracks = Recording(str(file)).tracks
+    assert tracks.ids.tolist() == [0, 1, 2]
+    assert f"left out by their labels: 1 {kind}" in tracks.note
+
+
+def test_people_on_vehicles_of_mot_are_no_pedestrians(tmp_path: Path) -> None:
+    file = tmp_path / "gt.txt"
+    classes = (1, 2, 3, 6, 7)
+    file.write_text("".join(f"{k},{id},{100 * id + k},100,20,60,1,{id},1\n" for k in range(1, 31) for id in classes))
+    assert Recording(str(file), fps=25.0).tracks.ids.tolist() == [1, 7]

@@ -37,10 +37,11 @@ if TYPE_CHECKING:
 __all__ = ["OTHER_AGENTS", "PrimaryScene", "Trajectories"]
 
 OTHER_AGENTS = frozenset(
-    ("animal", "bicycle", "bicyclist", "bike", "biker", "bus", "car", "cart", "cyclist", "motorcycle", "motorcyclist",
-     "scooter", "skateboarder", "skater", "trailer", "tram", "truck", "truck_bus", "van", "veh", "vehicle")
+    ("animal", "bicycle", "bicyclist", "bike", "biker", "bus", "car", "cart", "cyclist", "misc", "motorcycle",
+     "motorcyclist", "person on vehicle", "scooter", "skateboarder", "skater", "trailer", "tram", "truck", "truck_bus",
+     "van", "veh", "vehicle")
 )  # fmt: skip
-"""Labels of tracks that are not of pedestrians, in lower case, as in SDD, inD and CITR."""
+"""Labels of tracks that are not of pedestrians, in lower case, as in SDD, inD, CITR, KITTI and MOT Challenge."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
