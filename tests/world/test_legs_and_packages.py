@@ -140,3 +140,32 @@ def test_a_package_that_lacks_a_file_is_not_asked_for_again(files, filename, wor
     main.write_text(INCLUDE.format(filename, MASS))
     with pytest.raises(InputError, match=f"'deg_to_rad' is not defined; the included file .*{words}"):
         read_urdf(main, packages=packages)
+
+
+def below_waist(joints: int, *limbs: str) -> tuple[str, ...]:
+    """Return limbs below a waist of this many joints, whose links have a mass."""
+    parts = [part.replace("<parent link='body'/>", f"<parent link='waist_{joints - 1}'/>") for part in limbs]
+    return (limb("waist", 0.0, 0.0, (0.05,) * joints), *parts)
+
+
+ARM = limb("arm", 0.0, 0.3, (0.0, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("joints", "limbs", "legs"),
+    [
+        (1, pair(0.1, 0.1, 0.3, 0.3), 8),
+        (1, (*pair(0.0, 0.05, 0.05, 0.3, 0.3, 0.05), ARM), 12),
+        (2, pair(0.1, 0.1, 0.3, 0.3), 8),
+        (3, pair(0.1, 0.1, 0.3, 0.3, 0.05), 10),
+        (1, tuple(limb(f"leg{k}", x, y, (0.1, 0.1, 0.3, 0.3)) for k, (x, y) in enumerate(FOUR)), 16),
+        (4, pair(0.1, 0.1, 0.3, 0.3), 0),  # an arm with two long fingers
+        (5, pair(0.2, 0.2, 0.3), 0),
+        (1, pair(0.2, 0.3, 0.3), 0),  # a gripper on a lift
+    ],
+)
+def test_legs_below_a_waist_are_legs(joints, limbs, legs, tmp_path):
+    """The root of Romeo is its chest, and its legs begin below its trunk."""
+    base = recognize_base(read_urdf(robot(tmp_path, *below_waist(joints, *limbs))))
+    assert (base.kind, len(base.legs)) == ("legged" if legs else "planar", legs)
+    assert not any(name.startswith("waist") for name in base.legs)

@@ -17,6 +17,8 @@ BASE_KINDS = (
     "differential", "skid-steer", "ackermann", "tricycle", "mecanum", "omnidirectional", "legged", "planar",
 )  # fmt: skip
 """Kinds of base; ``planar`` is a base without wheels and legs that are recognized."""
+WAIST, LEG = 3, 4
+"""Most joints of a waist, and fewest of a leg below it: fingers of a hand on an arm share more and have fewer."""
 LIFT = 0.3
 """Travel [m] above which a sliding joint belongs to a lift, not to a leg."""
 NEAR_GROUND = 0.03
@@ -314,10 +316,10 @@ def _legs(
 
     Legs are chains of at least two rotating joints whose last links are near the ground. They begin at different joints
     of the body. Fingers of a hand that hangs down do not, nor does an arm on a lift. A link with a mass and without a
-    shape counts by its origin, as the feet of a model whose body alone has a shape.
+    shape counts by its origin, as the feet of a model whose body alone has a shape. A model whose root is the chest
+    has its waist above the legs: up to three joints that all of them share, with at least four more in each leg.
     """
-    found: dict[str, None] = {}
-    limbs: set[str] = set()
+    found: list[tuple[str, ...]] = []
     feet = math.inf
     for name, rows in points.items():
         bare = not len(rows) and model.links[name].inertial is not None
@@ -329,10 +331,15 @@ def _legs(
         turning = [joint for joint in chain if joint.kind in ("revolute", "continuous") and joint.mimic is None]
         lifted = any(joint.kind == "prismatic" and joint.upper - joint.lower > LIFT for joint in chain)
         if len(turning) >= 2 and not lifted:
-            limbs.add(turning[-1].name)
             feet = min(feet, lowest)
-            found |= dict.fromkeys(joint.name for joint in reversed(turning))
-    return (tuple(found), feet) if len(limbs) >= 2 else ((), ground)
+            found.append(tuple(joint.name for joint in reversed(turning)))
+    whole = [chain for chain in found if not any(other[: len(chain)] == chain != other for other in found)]
+    shared = next((k for k, names in enumerate(zip(*whole, strict=False)) if len(set(names)) > 1), 0)
+    if len({chain[0] for chain in found}) < 2 and not (
+        0 < shared <= WAIST and all(len(chain) - shared >= LEG for chain in whole)
+    ):
+        return (), ground
+    return tuple(dict.fromkeys(name for chain in found for name in chain[shared:])), feet
 
 
 def _kind(
