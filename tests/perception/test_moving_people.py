@@ -49,6 +49,36 @@ def test_furniture_is_no_person_beside_a_moving_scanner():
     assert max(map(len, tracks)) == 1
 
 
+def test_a_wall_along_the_way_of_the_scanner_is_no_person():
+    wall = [[(-2.0, 1.0), (40.0, 1.0)]]
+    tracker, lidar = MovingPeople(), Lidar2D(rays=360)
+    state, most = tracker.begin(), 0
+    for k in range(60):
+        scene = Scene.of([[90.0, 0.0]], walls=wall).replace(time=0.1 * k)
+        found = LidarClusters().detect(lidar.read(scene, Pose.of((0.06 * k, 0.0), 0.0)))
+        tracks, state = tracker.update(found, 0.1 * k, state)
+        most = max(most, len(tracks))
+    assert most == 0
+
+
+def test_what_stands_in_free_space_is_followed_only_after_it_walked():
+    """A chair that is put down is lost as soon as the ground under it is known to be occupied; a person is not."""
+    chair = follow(MovingPeople(), lambda k: [90.0, 0.0] if k < 25 else [4.0, 2.0], 90)
+    assert max(map(len, chair)) == 1
+    assert len(chair[-1]) == 0
+    held = follow(MovingPeople(walk=0.0), lambda k: [90.0, 0.0] if k < 25 else [4.0, 2.0], 90)
+    assert len(held[-1]) == 1
+
+
+def test_confirmed_people_are_those_who_were_seen_to_walk():
+    plain, confirmed = (follow(MovingPeople(confirm=value), crossing, 50) for value in (0.0, 1.0))
+    first = next(k for k, tracks in enumerate(plain) if len(tracks))
+    shown = next(k for k, tracks in enumerate(confirmed) if len(tracks))
+    assert 8 <= shown - first <= 14  # 1 m at 1 m/s and 10 scans a second
+    assert np.array_equal(plain[-1].ids, confirmed[-1].ids)
+    assert np.array_equal(plain[-1].position, confirmed[-1].position)
+
+
 def test_a_person_who_stops_is_still_followed():
     tracks = follow(MovingPeople(), lambda k: crossing(min(k, 30)), 90)
     assert tracks[-1].position == pytest.approx(np.array([crossing(30)]), abs=0.1)
@@ -108,7 +138,8 @@ def test_beams_pass_cells_and_end_in_one():
     assert passed[at : at + 9, at].tolist() == [1.0] * 9
     assert passed[at + 10 :, at].sum() == 0.0
     assert passed[at, at + 1 :].sum() == 0.0
-    assert passed[at, at - 28 : at].tolist() == [1.0] * 28
+    assert passed[at, at - 18 : at].tolist() == [1.0] * 18
+    assert passed[at, : at - 18].sum() == 0.0  # no farther than the neighbour, whose beam ends after 2 m
 
 
 def test_time_and_fields_are_checked():
@@ -117,7 +148,16 @@ def test_time_and_fields_are_checked():
     _, state = tracker.update(Detections.of(1.0, [], 0.05, coverage), 1.0, tracker.begin())
     with pytest.raises(InputError, match=r"time = 0.5 s must be finite and not before"):
         tracker.update(Detections.of(0.5, [], 0.05, coverage), 0.5, state)
-    wrong = {"lag": -1.0, "memory": 0.0, "scans": 0.0, "occupied": 1.5, "share": 0.0, "hold": -0.1}
+    wrong = {
+        "lag": -1.0,
+        "memory": 0.0,
+        "scans": 0.0,
+        "occupied": 1.5,
+        "share": 0.0,
+        "hold": -0.1,
+        "walk": -1.0,
+        "confirm": -1.0,
+    }
     for field, value in wrong.items():
         with pytest.raises(InputError, match=f"MovingPeople: {field} = "):
             MovingPeople(**{field: value})

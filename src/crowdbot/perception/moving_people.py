@@ -50,12 +50,16 @@ class MovingPeopleState:
         space: what the beams met, without those of the last ``lag`` seconds; None at the beginning.
         recent: times [s] and coverages of the last ``lag`` seconds.
         tracks: tracks of the last update, None before.
+        start: ``[N, 2]`` where these tracks were first [m].
+        away: ``[N]`` largest distance from there so far [m].
         inner: state of the inner tracker.
     """
 
     space: FreeSpace | None
     recent: tuple[tuple[float, Coverage], ...]
     tracks: Tracks | None
+    start: Floats
+    away: Floats
     inner: Any
 
 
@@ -64,11 +68,12 @@ class MovingPeople(Tracker):
     """Tracker of people who were seen to walk: a track begins only where a scan has shown free space before.
 
     Furniture of the width of legs stands where the scanner has never seen free space; people walk through it. A grid of
-    the ground, which moves with the scanner, counts in how many scans beams passed a cell and ended in it. Detections
-    count if most of their returns lie in cells that were free until ``lag`` before now and do not touch an occupied
-    cell, or if they are near a person who is already tracked (Leigh, Pineau, Olmedo and Zhang (2015), Person tracking
-    and following with 2D laser scanners, doi 10.1109/ICRA.2015.7139259, use free space in a similar way). People who
-    stand from the beginning are not found until they walk. Detections without a coverage all count.
+    the ground, which moves with the scanner, counts in how many scans beams passed a cell and ended in it. Beams count
+    as far as their two neighbours reach: along a wall they pass cells that others end in. Detections count if most of
+    their returns lie in cells that were free until ``lag`` before now and do not touch an occupied cell, or if they are
+    near a person who has walked since the track began (Leigh, Pineau, Olmedo and Zhang (2015), Person tracking and
+    following with 2D laser scanners, doi 10.1109/ICRA.2015.7139259, use free space in a similar way). People who stand
+    from the beginning are not found until they walk. Detections without a coverage all count.
 
     Fields:
         tracker: tracker of the detections that count.
@@ -78,7 +83,10 @@ class MovingPeople(Tracker):
         occupied: share of the scans in which a beam ended in a cell from which on the cell and those around it are not
             free.
         share: smallest share of the returns of a new person in free cells.
-        hold: distance from a tracked person within which all detections count [m].
+        hold: distance from a person who has walked within which all detections count [m].
+        walk: distance from the start of a track at which the person has walked [m].
+        confirm: distance from its start at which a track is shown [m]; 0: at once. 0.5 to 1 m leave out most false
+            tracks, and show people later.
 
     Raises:
         InputError: a value is not allowed.
@@ -103,12 +111,14 @@ class MovingPeople(Tracker):
     occupied: float = 0.1
     share: float = 0.5
     hold: float = 0.4
+    walk: float = 0.5
+    confirm: float = 0.0
 
     def __post_init__(self) -> None:
         name = type(self).__name__
         if not isinstance(self.tracker, Tracker) or isinstance(self.tracker, MovingPeople):
             raise InputError(f"{name}: tracker = {type(self.tracker).__name__} must be another tracker")
-        for word, unit in (("lag", "s"), ("hold", "m")):
+        for word, unit in (("lag", "s"), ("hold", "m"), ("walk", "m"), ("confirm", "m")):
             check_number(name, word, getattr(self, word), unit, min=0.0)
         check_number(name, "memory", self.memory, "s", exclusive_min=0.0)
         check_number(name, "scans", self.scans, exclusive_min=0.0)
@@ -116,7 +126,7 @@ class MovingPeople(Tracker):
             check_number(name, word, getattr(self, word), exclusive_min=0.0, max=1.0)
 
     def begin(self) -> MovingPeopleState:
-        return MovingPeopleState(None, (), None, self.tracker.begin())
+        return MovingPeopleState(None, (), None, np.zeros((0, 2)), np.zeros(0), self.tracker.begin())
 
     def update(self, detections: Detections, time: float, state: MovingPeopleState) -> tuple[Tracks, MovingPeopleState]:
         self.check_time(time, state.recent[-1][0] if state.recent else math.nan)
@@ -124,11 +134,16 @@ class MovingPeople(Tracker):
         space, recent = state.space, state.recent
         if coverage is not None:
             space, recent = self._learn(state, time, coverage)
-            kept = self._counts(detections, coverage, space, state.tracks)
+            kept = self._counts(detections, coverage, space, state)
             place, spread, points = detections.position, detections.covariance, detections.points
             detections = Detections(detections.time, place[kept], spread[kept], points[kept], coverage)
         tracks, inner = self.tracker.update(detections, time, state.inner)
-        return tracks, MovingPeopleState(space, recent, tracks, inner)
+        start, away = tracks.position.copy(), np.zeros(len(tracks))
+        if state.tracks is not None:
+            _, here, there = np.intersect1d(tracks.ids, state.tracks.ids, return_indices=True)
+            start[here], away[here] = state.start[there], state.away[there]
+        away = np.maximum(away, np.hypot(*(tracks.position - start).T))
+        return _rows(tracks, away >= self.confirm), MovingPeopleState(space, recent, tracks, start, away, inner)
 
     def _learn(
         self, state: MovingPeopleState, time: float, coverage: Coverage
@@ -146,7 +161,7 @@ class MovingPeople(Tracker):
         recent = (*state.recent[len(old) :], (float(time), coverage))
         return FreeSpace(space.corner, passed, met), recent
 
-    def _counts(self, detections: Detections, coverage: Coverage, space: FreeSpace, tracks: Tracks | None) -> Bools:
+    def _counts(self, detections: Detections, coverage: Coverage, space: FreeSpace, state: MovingPeopleState) -> Bools:
         """Return which detections ``[N]`` are in free space or near a person."""
         origin = coverage.origin - CELL * np.array(space.corner)
         position = np.ascontiguousarray(detections.position - CELL * np.array(space.corner))
@@ -156,10 +171,17 @@ class MovingPeople(Tracker):
             coverage.reach, position, shares,
         )  # fmt: skip
         kept = shares >= self.share
-        if tracks is not None and len(tracks):
-            away = detections.position[:, None] - tracks.position[None]
-            kept |= np.hypot(away[..., 0], away[..., 1]).min(axis=1) <= self.hold
+        walkers = state.away >= self.walk
+        if state.tracks is not None and walkers.any():
+            gap = detections.position[:, None] - state.tracks.position[None, walkers]
+            kept |= np.hypot(gap[..., 0], gap[..., 1]).min(axis=1) <= self.hold
         return np.asarray(kept)
+
+
+def _rows(tracks: Tracks, rows: Bools) -> Tracks:
+    """Return some of the tracks."""
+    values = [getattr(tracks, field.name)[rows] for field in dataclasses.fields(Tracks)[1:]]
+    return Tracks(tracks.time, *values)
 
 
 def _moved(space: FreeSpace | None, corner: Any) -> FreeSpace:
@@ -183,7 +205,7 @@ def _moved(space: FreeSpace | None, corner: Any) -> FreeSpace:
 
 @kernel
 def count_beams(passed: Floats, met: Floats, origin: Floats, first: float, step: float, reach: Floats) -> None:
-    """Add one scan to the grids: 1 where a beam ended, or else where one passed.
+    """Add one scan to the grids: 1 where a beam ended, or else where one passed, no farther than its neighbours.
 
     The farthest beams have no return, or one that is farther away than people are seen. ``origin`` ``[2]`` is the
     scanner from the corner of the grid [m], ``reach`` ``[R]`` the length of the beams [m].
@@ -192,7 +214,11 @@ def count_beams(passed: Floats, met: Floats, origin: Floats, first: float, step:
     seen = np.zeros((side, side), dtype=np.uint8)
     for k in range(len(reach)):
         x, y = math.cos(first + k * step), math.sin(first + k * step)
-        for s in range(int((min(reach[k], REACH) - CELL) / (0.5 * CELL))):
+        clear = min(reach[k], REACH)
+        for other in (k - 1, k + 1):  # along a wall, a beam passes what its neighbour meets
+            if 0 <= other < len(reach) and reach[other] > 0.0:
+                clear = min(clear, reach[other])
+        for s in range(int((clear - CELL) / (0.5 * CELL))):
             i, j = int((origin[0] + 0.5 * CELL * s * x) / CELL), int((origin[1] + 0.5 * CELL * s * y) / CELL)
             if 0 <= i < side and 0 <= j < side:
                 seen[i, j] = max(seen[i, j], 1)
