@@ -31,8 +31,6 @@ from crowdbot.recording import read_episode, replay
 from crowdbot.trials import load_trial
 
 HERE = Path(__file__).parent
-TEN_MINUTES = pytest.param(600, marks=[pytest.mark.soak, pytest.mark.timeout(900)])
-"""Seconds of the longest runs; a test is ended after ten minutes if it does not say more."""
 VIEWER = bridge_viewer.__file__
 ENDLESS = ("--set", "duration=3600", "--set", "end/collision=false", "--set", "end/goal=false")
 OWN = {name: os.environ[name] for name in ("PYTHONPATH",) if name in os.environ}

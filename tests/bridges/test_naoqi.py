@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import qi
 from bridge_runs import MemoryTransport, Running, wait
-from partner_runs import TEN_MINUTES, OdometryMemory, recording_of, time_until_still
+from partner_runs import OdometryMemory, recording_of, time_until_still
 
 from crowdbot.bridges import BridgeClock, open_transport, run_bridge
 from crowdbot.bridges.naoqi import NaoqiBridge
@@ -177,6 +177,10 @@ def test_killed_simulations_leave_the_robot_its_own_values_and_a_recording_that_
             assert second["virtual"] == first["virtual"]
             episode = read_episode(out / "episode.mcap")
             assert (len(episode.orders) > 0, episode.complete) == (True, False)
+
+
+TEN_MINUTES = pytest.param(600, marks=[pytest.mark.soak, pytest.mark.timeout(900)])
+"""Seconds of the longest runs; a test is ended after ten minutes if it does not say more."""
 
 
 @pytest.mark.live

@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from partner_runs import TEN_MINUTES, deaths, faulty, kills, load, loop, odd, server_deaths
+from partner_runs import deaths, faulty, kills, load, loop, odd, server_deaths
 
 HERE = Path(__file__).parent
 HERE_ALONE = ("rosbridge", "foxglove", "tcp", "ros2")
 """Transports that need nothing but packages of Python."""
 THIRTY = pytest.param(30, marks=pytest.mark.sweep)
+TEN_MINUTES = pytest.param(600, marks=[pytest.mark.soak, pytest.mark.timeout(900)])
+"""Seconds of the longest runs; a test is ended after ten minutes if it does not say more."""
 LOOP = pytest.mark.parametrize("seconds", [3, THIRTY, TEN_MINUTES])
 LONG_LOOP = pytest.mark.parametrize("seconds", [THIRTY, TEN_MINUTES])
 FAULTY = pytest.mark.parametrize("count", [1, pytest.param(50, marks=pytest.mark.soak)])
