@@ -13,7 +13,7 @@ from crowdbot.evaluation import (
     EvaluationResult,
     RunRow,
     WorstRun,
-    metric_unit,
+    metric_title,
     not_dangerous,
     parse_statistic,
     person_contacts,
@@ -108,7 +108,8 @@ def test_rows_without_a_dangerous_run_say_so_and_show_the_closest(tmp_path: Path
 )
 def test_titles_have_units(name: str, title: str) -> None:
     assert parse_statistic(name).title == title
-    assert metric_unit("no_such_metric") == ""
+    assert metric_title("no_such_metric") == "no-such-metric"
+    assert metric_title("max_severity") == "max-severity [1]"
 
 
 def test_the_page_begins_with_the_verdict_and_lists_contacts(tmp_path: Path) -> None:
