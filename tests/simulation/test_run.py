@@ -325,6 +325,9 @@ def test_tracks_need_a_multiple_of_the_recording_period() -> None:
     assert episode.tracks(0.2).dt == pytest.approx(0.2)
     with pytest.raises(InputError, match=r"recorded every 0.1 s, dt must be a multiple"):
         episode.tracks(0.25)
+    for times in (episode.times, np.append(episode.times[:-1], 1e9)):  # a damaged file may have any time
+        with pytest.raises(InputError, match=r"recorded every 0.1 s, dt must be a multiple"):
+            dataclasses.replace(episode, times=times).tracks(0.01 if times is episode.times else 0.1)
 
 
 def test_the_scene_begins_with_people_who_walk_to_their_goals() -> None:

@@ -179,9 +179,10 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     ticks = np.rint(view.times * 1e9 / schedule.step_ns).astype(np.int64)
     times = schedule.index(ticks) * (schedule.period_ns / 1e9)  # at or less than one step before those of the steps
     begin = float(times[0])  # above 0 if it continues another episode
-    wanted = begin + np.arange(math.floor((float(times[-1]) - begin) / dt + 1e-9) + 1) * dt
+    count = math.floor((float(times[-1]) - begin) / dt + 1e-9) + 1
+    wanted = begin + np.arange(min(count, len(times))) * dt  # count is larger if steps are missing or dt is too short
     rows = np.clip(np.searchsorted(times, wanted - 1e-6), 0, len(times) - 1)
-    if np.any(np.abs(times[rows] - wanted) > 1e-6):
+    if count > len(times) or np.any(np.abs(times[rows] - wanted) > 1e-6):
         period = schedule.period_ns / 1e9
         raise InputError(f"tracks every {dt} s: the episode was recorded every {period:g} s, dt must be a multiple")
     frame, agent = np.nonzero(view.active[rows])
