@@ -259,6 +259,20 @@ def test_a_client_offers_an_action_to_another(graph):
     assert [(item["op"], item["id"]) for item in taken(caller)] == [("action_feedback", "g"), ("action_result", "g")]
 
 
+@pytest.mark.parametrize(
+    ("service", "values", "fields"),
+    [
+        ("reset_simulation", [4], {"scope": 4}),  # its type has constants
+        ("step_simulation", [9], {"steps": 9}),  # its type has a default
+        ("set_entity_state", ["robot", {}, True], {"entity": "robot", "state": {}, "set_pose": True}),
+        ("get_current_world", [], {}),
+        ("not_a_service", [1], {}),
+    ],
+)
+def test_the_fields_of_a_request_may_be_a_list(graph, service, values, fields):
+    assert graph.positional(f"/crowdbot/{service}", values) == fields
+
+
 def test_the_steps_of_the_simulation_are_an_action(graph):
     session = client(graph)
     frame = {"op": "send_action_goal", "id": "g", "action": "/crowdbot/simulate_steps", "args": {"steps": 40}}

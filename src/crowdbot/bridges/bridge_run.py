@@ -23,7 +23,8 @@ from crowdbot.simulation import (
 from crowdbot.trials import Trial, check_trial
 
 from .port import BridgePort, steered_trial
-from .run_control import PAUSED, PLAYING, BridgeClock, InstantRepeat, Pace, RunControl
+from .run_control import BridgeClock, InstantRepeat, Pace, RunControl
+from .simulation_interfaces import STATE_PAUSED, STATE_PLAYING
 from .transport import RemarkSource, Transport
 
 IDLE = 0.02
@@ -89,7 +90,7 @@ class BridgeRun:
         self.trial, self.seed, self.clock, self.force = steered_trial(trial), seed, clock, force
         self.out = None if out is None else episode_path(out)
         if port is None:
-            control = RunControl(state=PAUSED if clock.mode == "step" else PLAYING)
+            control = RunControl(state=STATE_PAUSED if clock.mode == "step" else STATE_PLAYING)
             port = BridgePort(self.trial, transports, control, follows_clock=clock.mode == "follow")
         self.port, self.control = port, port.control
         self.note = note or (lambda text: None)

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 from crowdbot.bridges.fields import stamp_fields
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import RobotInterface
+from crowdbot.bridges.simulation_interfaces import STATE_QUITTING
 from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError
 from crowdbot.recording import StepMessage
@@ -129,8 +130,6 @@ LOOK = 0.1
 """Longest real time [s] until a thread sees that the run has ended."""
 LATEST = 60.0
 """Longest real time [s] of a step that a client waits for."""
-QUIT = 3
-"""State of ``simulation_interfaces/SimulationState`` that ends the simulation."""
 
 
 class ChallengeServer:
@@ -329,7 +328,7 @@ class ChallengeServer:
         done = threading.Event()
         service, request = "reset_simulation", dict[str, Any]()
         if letter == "s":
-            service, request = "set_simulation_state", {"state": {"state": QUIT}}
+            service, request = "set_simulation_state", {"state": {"state": STATE_QUITTING}}
         self._inbox.call(f"/crowdbot/{service}", request, lambda _: done.set(), self.name)
         while not done.wait(LOOK) and not self._ended:
             continue

@@ -16,7 +16,8 @@ from .interface import Request, RobotInterface
 from .joint_actions import ABORTED, INVALID_GOAL, JointActions, goal_end
 from .joint_trajectory import JointTrajectory
 from .run_control import RunControl
-from .simulation_services import FAILED, answer_call, result
+from .simulation_interfaces import RESULT_OPERATION_FAILED
+from .simulation_services import answer_call, result
 from .transport import Transport
 
 
@@ -184,7 +185,7 @@ class BridgePort:
         actions = {action.name for action in self.interface.actions}
         for call in self.inbox.close():
             is_goal = call.service in actions
-            call.answer(goal_end(ABORTED, INVALID_GOAL, text) if is_goal else result(FAILED, text))
+            call.answer(goal_end(ABORTED, INVALID_GOAL, text) if is_goal else result(RESULT_OPERATION_FAILED, text))
 
     def report(self, level: str, text: str) -> None:
         """Tell all other programs about a problem."""

@@ -13,8 +13,7 @@ import numpy as np
 from crowdbot.core import InputError
 from crowdbot.trials import Trial
 
-STOPPED, PLAYING, PAUSED, QUITTING = 0, 1, 2, 3
-"""States of ``simulation_interfaces/SimulationState``."""
+from .simulation_interfaces import STATE_PLAYING, STATE_QUITTING
 
 
 @dataclass
@@ -22,7 +21,7 @@ class RunControl:
     """What other programs have asked of a run.
 
     Fields:
-        state: :data:`STOPPED`, :data:`PLAYING`, :data:`PAUSED` or :data:`QUITTING`.
+        state: a state of ``simulation_interfaces/SimulationState``: stopped, playing, paused or quitting.
         steps: steps that are still to do while paused.
         stepped: called after the last of them, or with False if the run has ended before.
         begun: the trial of the current run, as it began.
@@ -35,7 +34,7 @@ class RunControl:
     True
     """
 
-    state: int = PLAYING
+    state: int = STATE_PLAYING
     steps: int = 0
     stepped: Callable[[bool], None] | None = None
     begun: Trial | None = None
@@ -46,12 +45,12 @@ class RunControl:
     @property
     def may_step(self) -> bool:
         """Whether a step is allowed: playing, or steps were asked for while paused."""
-        return self.state == PLAYING or self.steps > 0
+        return self.state == STATE_PLAYING or self.steps > 0
 
     @property
     def leaves(self) -> bool:
         """Whether the current run ends now."""
-        return self.state == QUITTING or self.restart is not None
+        return self.state == STATE_QUITTING or self.restart is not None
 
     def note_step(self) -> None:
         """Count a step that was asked for while paused, and answer after the last one."""

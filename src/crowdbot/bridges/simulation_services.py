@@ -27,31 +27,26 @@ from crowdbot.simulation import (
 from crowdbot.trials import Trial, builtin_trials, check_trial, load_trial, parse_trial, trial_xml
 from crowdbot.world import builtin_robots, next_person
 
+from . import simulation_interfaces as si
 from .fields import stamp_fields
 from .inbox import Inbox, ServiceCall
 from .interface import Fields, read_heading, read_number, read_point
-from .run_control import PAUSED, PLAYING, QUITTING, STOPPED, RunControl
-
-UNSUPPORTED, OK, NOT_FOUND, INCORRECT_STATE, FAILED = 0, 1, 2, 3, 4
+from .run_control import RunControl
 
 
 class UnsupportedFeature(InputError):
     """A request uses an optional feature of the standard that this program does not have."""
 
 
-def result(code: int = OK, message: str = "", **fields: Any) -> dict[str, Any]:
+def result(code: int = si.RESULT_OK, message: str = "", **fields: Any) -> dict[str, Any]:
     """Return a response with its result and other fields.
 
-    >>> result(NOT_FOUND, "no robot")
+    >>> result(si.RESULT_NOT_FOUND, "no robot")
     {'result': {'result': 2, 'error_message': 'no robot'}}
     """
     return {"result": {"result": code, "error_message": message}, **fields}
 
 
-ROBOT, HUMAN = 1, 2
-"""Categories of ``simulation_interfaces/EntityCategory``."""
-BOX, SPHERE = 1, 3
-"""Types of ``simulation_interfaces/Bounds`` that are supported, besides none."""
 LONGEST, MOST_REPEATS = 200, 4
 """Largest length of a name filter, and of the number of its repetitions, which bounds the time of a search."""
 
@@ -61,7 +56,7 @@ class Entity(NamedTuple):
 
     Fields:
         name: name of the robot, or ``person_`` and the id.
-        category: :data:`ROBOT` or :data:`HUMAN`.
+        category: a category of ``simulation_interfaces/EntityCategory``, robot or human.
         number: id in the simulation.
         slot: index in the scene.
     """
@@ -82,13 +77,15 @@ def entities(simulation: Simulation) -> list[Entity]:
     world = simulation.world
     ids, active = world.ids[0], world.scene.active[0]
     found = [
-        Entity(robot.robot.name, ROBOT, int(ids[robot.agent]), robot.agent)
+        Entity(robot.robot.name, si.CATEGORY_ROBOT, int(ids[robot.agent]), robot.agent)
         for robot in simulation.robots
         if active[robot.agent]
     ]
     robots = {one.slot for one in found} | {robot.agent for robot in simulation.robots}
     slots = sorted((int(slot) for slot in np.flatnonzero(active[: world.slots[0]])), key=lambda slot: int(ids[slot]))
-    return found + [Entity(f"person_{ids[slot]}", HUMAN, int(ids[slot]), slot) for slot in slots if slot not in robots]
+    return found + [
+        Entity(f"person_{ids[slot]}", si.CATEGORY_HUMAN, int(ids[slot]), slot) for slot in slots if slot not in robots
+    ]
 
 
 def entity_of(simulation: Simulation, name: Any) -> Entity:
@@ -114,7 +111,7 @@ def filter_entities(simulation: Simulation, filters: Mapping[str, Any]) -> list[
     if tags.get("tags"):
         raise UnsupportedFeature("entities have no tags")
     points = bounds.get("points") or []
-    if points and (bounds.get("type") not in (BOX, SPHERE) or len(points) != 2):
+    if points and (bounds.get("type") not in (si.TYPE_BOX, si.TYPE_SPHERE) or len(points) != 2):
         raise UnsupportedFeature("bounds must be a box (1) or a sphere (3) with two points")
     found = entities(simulation)
     if filters.get("filter"):
@@ -132,7 +129,7 @@ def _distance(simulation: Simulation, entity: Entity, kind: int, points: Any) ->
     """Return the distance of an entity from a box or sphere in the plane [m], not above 0 if they overlap."""
     x, y = simulation.world.scene.position[0, entity.slot].tolist()
     first, second = ((read_number(point, "x"), read_number(point, "y")) for point in points)
-    if kind == SPHERE:
+    if kind == si.TYPE_SPHERE:
         gap = math.dist((x, y), first) - second[0]
     else:
         edges = [sorted(pair) for pair in zip(first, second, strict=True)]
@@ -172,8 +169,6 @@ def state_of_entity(simulation: Simulation, entity: Entity) -> dict[str, Any]:
     }
 
 
-NAME_NOT_UNIQUE, NAME_INVALID, NO_RESOURCE, NAMESPACE_INVALID, PARSE_ERROR, INVALID_POSE = 101, 102, 104, 105, 106, 109
-"""Results of ``simulation_interfaces/SpawnResult``."""
 PROPS = ("cube", "table", "tree")
 SPAWNABLES = {
     "person": "a person who walks 10 m ahead; person?goal_x=5&goal_y=3&speed=1.2 sets the goal [m] and the speed [m/s]",
@@ -210,7 +205,7 @@ def spawn_order(
     except SpawnError as error:
         return None, result(error.code, str(error), entity_name="")
     except InputError as error:
-        return None, result(FAILED, str(error), entity_name="")
+        return None, result(si.RESULT_OPERATION_FAILED, str(error), entity_name="")
 
 
 class SpawnError(InputError):
@@ -227,33 +222,33 @@ def _checked_order(
     resource = request.get("entity_resource") or request
     uri, text = str(resource.get("uri") or ""), str(resource.get("resource_string") or "")
     if not uri and not text:
-        raise SpawnError(NO_RESOURCE, "give a uri or a resource_string")
+        raise SpawnError(si.SPAWN_ENTITY_NO_RESOURCE, "give a uri or a resource_string")
     name, space = str(request.get("name") or ""), str(request.get("entity_namespace") or "").strip("/")
     taken = {entity.name for entity in entities(simulation)}
     renames = bool(request.get("allow_renaming"))
     if name in taken and not renames:
-        raise SpawnError(NAME_NOT_UNIQUE, f"there is an entity {name[:80]!r}")
+        raise SpawnError(si.NAME_NOT_UNIQUE, f"there is an entity {name[:80]!r}")
     pose = _read_pose(request.get("initial_pose") or {})
     if uri:
         order, chosen = _order(uri, name, pose, simulation, waiting, taken)
     else:
         order, chosen = _element_order(text, simulation)
     if name and chosen != name and not renames:
-        raise SpawnError(NAME_INVALID, f"the entity will be {chosen!r}: leave the name empty, or allow renaming")
+        raise SpawnError(si.NAME_INVALID, f"the entity will be {chosen!r}: leave the name empty, or allow renaming")
     if space not in ("", chosen):
-        raise SpawnError(NAMESPACE_INVALID, f"the topics of an entity are under its name, {chosen!r}")
+        raise SpawnError(si.NAMESPACE_INVALID, f"the topics of an entity are under its name, {chosen!r}")
     order.check(simulation)
-    return order, result(OK, entity_name=chosen)
+    return order, result(si.RESULT_OK, entity_name=chosen)
 
 
 def _read_pose(pose: Mapping[str, Any]) -> tuple[float, float, float]:
     frame = (pose.get("header") or {}).get("frame_id") or "map"
     if frame not in ("map", "world"):
-        raise SpawnError(INVALID_POSE, f"the pose must be in the frame map, not {frame[:40]}")
+        raise SpawnError(si.SPAWN_ENTITY_INVALID_POSE, f"the pose must be in the frame map, not {frame[:40]}")
     try:
         return *read_point(pose, "pose", "position"), read_heading(pose, "pose", "orientation")
     except InputError as error:
-        raise SpawnError(INVALID_POSE, str(error)) from None
+        raise SpawnError(si.SPAWN_ENTITY_INVALID_POSE, str(error)) from None
 
 
 def _element_order(text: str, simulation: Simulation) -> tuple[Order, str]:
@@ -262,7 +257,7 @@ def _element_order(text: str, simulation: Simulation) -> tuple[Order, str]:
     try:
         order.check(simulation)
     except InputError as error:
-        raise SpawnError(PARSE_ERROR, str(error)) from None
+        raise SpawnError(si.SPAWN_ENTITY_RESOURCE_PARSE_ERROR, str(error)) from None
     head = re.search(r"<([A-Za-z][\w-]*)[^>]*", text)  # behind a declaration or comment
     name = re.search(r"""\bname\s*=\s*(["'])(.*?)\1""", head[0]) if head else None
     return order, name[2] if name else head[1] if head else "element"
@@ -293,7 +288,7 @@ def _order(
             f" heading='{heading!r}'><goal x='{x!r}' y='{y!r}' tolerance='0.1'/><navigator type='external'/></robot>"
         )
         return AddElementOrder(xml=xml, source=SOURCE), name
-    raise SpawnError(NOT_FOUND, f"{uri[:80]!r} is not known; get_spawnables lists what can be added")
+    raise SpawnError(si.RESULT_NOT_FOUND, f"{uri[:80]!r} is not known; get_spawnables lists what can be added")
 
 
 def _check_bodies(simulation: Simulation) -> None:
@@ -310,7 +305,6 @@ def _number(key: str, text: str) -> float:
         raise InputError(f"{key[:40]} = {text[:40]!r} must be a number") from None
 
 
-NO_WORLD_RESOURCE, WORLD_PARSE_ERROR = 102, 103
 MOST_TEXT = 1_000_000
 
 
@@ -322,7 +316,7 @@ def current_world(trial: Trial) -> dict[str, Any]:
 def available_worlds(request: Mapping[str, Any]) -> dict[str, Any]:
     """Return the response of ``GetAvailableWorlds``: the built-in trials."""
     if (request.get("filter") or {}).get("tags"):
-        return result(UNSUPPORTED, "worlds have no tags", worlds=[])
+        return result(si.RESULT_FEATURE_UNSUPPORTED, "worlds have no tags", worlds=[])
     return result(worlds=[_world(name, "", {"uri": name, "resource_string": ""}) for name in builtin_trials()])
 
 
@@ -346,11 +340,15 @@ def load_world(request: Mapping[str, Any], folder: Path | None) -> tuple[Trial |
                 raise InputError(f"a trial has at most {MOST_TEXT} characters")
             trial = parse_trial(text.encode(), place="load_world", folder=None, trust=False)
         else:
-            return None, result(NO_WORLD_RESOURCE, "give a uri or a resource_string", world=_world("", "", {}))
+            return None, result(si.LOAD_WORLD_NO_RESOURCE, "give a uri or a resource_string", world=_world("", "", {}))
         check_trial(trial, trial.seed)
     except InputError as error:
-        return None, result(WORLD_PARSE_ERROR if text else FAILED, str(error), world=_world("", "", {}))
-    return trial, result(OK, world=_world(trial.name, trial.about, {"uri": uri, "resource_string": ""}))
+        return None, result(
+            si.LOAD_WORLD_RESOURCE_PARSE_ERROR if text else si.RESULT_OPERATION_FAILED,
+            str(error),
+            world=_world("", "", {}),
+        )
+    return trial, result(si.RESULT_OK, world=_world(trial.name, trial.about, {"uri": uri, "resource_string": ""}))
 
 
 def _load(uri: str, folder: Path | None) -> Trial:
@@ -366,13 +364,32 @@ def _world(name: str, about: str, resource: Mapping[str, Any]) -> dict[str, Any]
     return {"name": name, "world_resource": dict(resource), "description": about, "tags": []}
 
 
-FEATURES = (0, 1, 6, 8, 9, 10, 11, 12, 14, 20, 23, 24, 25, 26, 31, 32, 40, 41, 44, 45, 50)
+FEATURES = (
+    si.SPAWNING,
+    si.DELETING,
+    si.ENTITY_BOUNDS_BOX,
+    si.ENTITY_CATEGORIES,
+    si.SPAWNING_RESOURCE_STRING,
+    si.ENTITY_STATE_GETTING,
+    si.ENTITY_STATE_SETTING,
+    si.ENTITY_INFO_GETTING,
+    si.SPAWNABLES,
+    si.SIMULATION_RESET,
+    si.SIMULATION_RESET_SPAWNED,
+    si.SIMULATION_STATE_GETTING,
+    si.SIMULATION_STATE_SETTING,
+    si.SIMULATION_STATE_PAUSE,
+    si.STEP_SIMULATION_SINGLE,
+    si.STEP_SIMULATION_MULTIPLE,
+    si.WORLD_LOADING,
+    si.WORLD_RESOURCE_STRING,
+    si.WORLD_INFO_GETTING,
+    si.AVAILABLE_WORLDS,
+    si.SPAWNING_ENTITIES,
+)
 """Supported features of ``simulation_interfaces/SimulatorFeatures``: all but a reset of time or state alone, named
 poses, bounds of entities, convex bounds, tags, setting the description of an entity, the action of steps, and unloading
 a world."""
-TIME, STATE, SPAWNED, ALL = 1, 2, 4, 255
-INVALID_ENTITY_POSE, SPAWN_FAILED = 101, 150
-"""Results of ``SetEntityState`` and ``SpawnEntities``."""
 SETS = ("set_pose", "set_twist", "set_acceleration")
 MOST_STEPS = 10_000_000
 ENDED = "the run has ended before the last step"
@@ -387,11 +404,11 @@ def answer_call(call: ServiceCall, simulation: Simulation, control: RunControl, 
     try:
         response = verb(call.request if isinstance(call.request, Mapping) else {})
     except LookupError as error:
-        response = result(NOT_FOUND, str(error.args[0]) if error.args else "not found")
+        response = result(si.RESULT_NOT_FOUND, str(error.args[0]) if error.args else "not found")
     except UnsupportedFeature as error:
-        response = result(UNSUPPORTED, str(error))
+        response = result(si.RESULT_FEATURE_UNSUPPORTED, str(error))
     except (InputError, AttributeError, TypeError, ValueError, OverflowError) as error:  # a request of a wrong shape
-        response = result(FAILED, str(error))
+        response = result(si.RESULT_OPERATION_FAILED, str(error))
     if response is not None:
         call.answer(response)
 
@@ -433,41 +450,44 @@ class Verbs:
         """Play, pause, stop (begin again and pause) or quit."""
         wanted, control = request["state"]["state"], self.control
         if wanted == control.state:
-            return result(101, "the simulation is in this state")
-        if wanted not in (STOPPED, PLAYING, PAUSED, QUITTING):
-            return result(FAILED, f"there is no state {str(wanted)[:40]}")
-        if control.steps and wanted != QUITTING:
-            return result(INCORRECT_STATE, "the simulation does the steps of step_simulation")
-        if wanted == STOPPED:
-            return self._restart(STOPPED)
+            return result(si.ALREADY_IN_TARGET_STATE, "the simulation is in this state")
+        if wanted not in (si.STATE_STOPPED, si.STATE_PLAYING, si.STATE_PAUSED, si.STATE_QUITTING):
+            return result(si.RESULT_OPERATION_FAILED, f"there is no state {str(wanted)[:40]}")
+        if control.steps and wanted != si.STATE_QUITTING:
+            return result(si.RESULT_INCORRECT_STATE, "the simulation does the steps of step_simulation")
+        if wanted == si.STATE_STOPPED:
+            return self._restart(si.STATE_STOPPED)
         control.state = wanted
         return result()
 
     def step_simulation(self, request: Fields) -> Response:
         """Do steps while the simulation is paused; the response comes after the last one."""
         steps, control = request.get("steps", 1), self.control
-        if control.state == PLAYING or control.steps:
-            return result(INCORRECT_STATE, "the simulation must be paused")
+        if control.state == si.STATE_PLAYING or control.steps:
+            return result(si.RESULT_INCORRECT_STATE, "the simulation must be paused")
         if isinstance(steps, bool) or not isinstance(steps, int) or not 0 <= steps <= MOST_STEPS:
-            return result(FAILED, f"steps = {str(steps)[:40]} must be from 0 to {MOST_STEPS}")
+            return result(si.RESULT_OPERATION_FAILED, f"steps = {str(steps)[:40]} must be from 0 to {MOST_STEPS}")
         if steps == 0:
             return result()
-        control.state, control.steps = PAUSED, steps
-        control.stepped = lambda done: self.answer(result() if done else result(FAILED, ENDED))
+        control.state, control.steps = si.STATE_PAUSED, steps
+        control.stepped = lambda done: self.answer(result() if done else result(si.RESULT_OPERATION_FAILED, ENDED))
         return None
 
     def reset_simulation(self, request: Fields) -> Response:
         """Begin the trial again, as another episode; or remove what was added."""
-        scope = request.get("scope", 0) or ALL
-        if scope == SPAWNED:
+        scope = request.get("scope", 0) or si.SCOPE_ALL
+        if scope == si.SCOPE_SPAWNED:
             for entity in entities(self.simulation):  # others have left or were removed
                 if entity.name in self.control.spawned:
                     self._delete(entity)
             self.control.spawned.clear()
             return result()
-        if scope in (ALL, TIME | STATE | SPAWNED):
+        if scope in (si.SCOPE_ALL, si.SCOPE_TIME | si.SCOPE_STATE | si.SCOPE_SPAWNED):
             return self._restart(self.control.state)
-        return result(UNSUPPORTED, "time and state are reset together with everything else: use scope 0, 4 or 255")
+        return result(
+            si.RESULT_FEATURE_UNSUPPORTED,
+            "time and state are reset together with everything else: use scope 0, 4 or 255",
+        )
 
     def spawn_entity(self, request: Fields) -> Response:
         """Add a person, a robot or a prop."""
@@ -482,8 +502,10 @@ class Verbs:
     def spawn_entities(self, request: Fields) -> Response:
         """Add several entities; some can fail."""
         rows = [self.spawn_entity(item) or {} for item in request["spawn_requests"]]
-        failed = any(row["result"]["result"] != OK for row in rows)
-        return result(SPAWN_FAILED if failed else OK, "not all were added" if failed else "", results=rows)
+        failed = any(row["result"]["result"] != si.RESULT_OK for row in rows)
+        if failed:
+            return result(si.ENTITIES_SPAWN_FAILED, "not all were added", results=rows)
+        return result(results=rows)
 
     def delete_entity(self, request: Fields) -> Response:
         """Remove a person or robot."""
@@ -512,7 +534,7 @@ class Verbs:
     def get_entity_info(self, request: Fields) -> Response:
         """Return the category of a robot or person."""
         entity = self._entity(request)
-        about = "robot" if entity.category == ROBOT else "person"
+        about = "robot" if entity.category == si.CATEGORY_ROBOT else "person"
         return result(info={"category": {"category": entity.category}, "description": about, "tags": []})
 
     def set_entity_state(self, request: Fields) -> Response:
@@ -524,19 +546,19 @@ class Verbs:
         pose, twist, _ = (bool(request.get(name, name == SETS[0])) for name in SETS)
         frame = (state.get("header") or {}).get("frame_id") or "map"
         if frame not in ("map", "world"):
-            return result(UNSUPPORTED, f"the pose must be in the frame map, not {str(frame)[:40]}")
+            return result(si.RESULT_FEATURE_UNSUPPORTED, f"the pose must be in the frame map, not {str(frame)[:40]}")
         parts = [("twist", kind, axis) for kind in ("linear", "angular") for axis in "xyz"]
         if twist and any(read_number(state, *part) for part in parts):
-            return result(UNSUPPORTED, "a robot or person can be set to rest, to no other velocity")
+            return result(si.RESULT_FEATURE_UNSUPPORTED, "a robot or person can be set to rest, to no other velocity")
         if not (pose or twist):
-            return result(FAILED, "nothing is set: set_pose and set_twist are false")
+            return result(si.RESULT_OPERATION_FAILED, "nothing is set: set_pose and set_twist are false")
         try:
             now = state_of_entity(self.simulation, entity)
             x, y = read_point(state if pose else now, "pose", "position")
             heading = read_heading(state if pose else now, "pose", "orientation")
             self._add(MoveOrder(person=entity.number, x=x, y=y, heading=heading, source=SOURCE))
         except InputError as error:
-            return result(INVALID_ENTITY_POSE, str(error))
+            return result(si.SET_ENTITY_STATE_INVALID_POSE, str(error))
         return result()
 
     def get_spawnables(self, request: Fields) -> Response:
@@ -548,8 +570,8 @@ class Verbs:
         trial, response = load_world(request, self.simulation.trial.folder)
         if trial is None:
             return response
-        self.control.restart, self.control.state = trial, STOPPED
-        self.control.restarted = lambda problem: self.answer(result(FAILED, problem) if problem else response)
+        self.control.restart, self.control.state = trial, si.STATE_STOPPED
+        self.control.restarted = lambda problem: self._answer_restart(problem, response)
         return None
 
     def get_current_world(self, request: Fields) -> Response:
@@ -565,11 +587,14 @@ class Verbs:
 
     def _restart(self, state: int) -> Response:
         self.control.restart, self.control.state = self.control.begun or self.simulation.trial, state
-        self.control.restarted = lambda problem: self.answer(result(FAILED, problem) if problem else result())
+        self.control.restarted = lambda problem: self._answer_restart(problem, result())
         return None
 
+    def _answer_restart(self, problem: str, response: dict[str, Any]) -> None:
+        self.answer(result(si.RESULT_OPERATION_FAILED, problem) if problem else response)
+
     def _delete(self, entity: Entity) -> None:
-        if entity.category == ROBOT:
+        if entity.category == si.CATEGORY_ROBOT:
             self._add(RemoveElementOrder(path=f"robot[{entity.name}]", source=SOURCE))
         else:
             self._add(RemoveOrder(person=entity.number, source=SOURCE))
@@ -577,10 +602,6 @@ class Verbs:
     def _add(self, order: Order) -> None:
         order.check(self.simulation)
         self.inbox.add(order)
-
-
-SAME_STATE = 101
-"""Result of ``set_simulation_state`` for the state in which the simulation is."""
 
 
 @dataclass(frozen=True)
@@ -608,14 +629,15 @@ class PlainService:
 
         def read(response: Mapping[str, Any]) -> None:
             result = response["result"]
-            answer("" if result["result"] in (OK, SAME_STATE) else str(result["error_message"]) or "refused")
+            done = result["result"] in (si.RESULT_OK, si.ALREADY_IN_TARGET_STATE)
+            answer("" if done else str(result["error_message"]) or "refused")
 
         inbox.call(f"/crowdbot/{self.verb}", self.request, read, sender)
 
 
 PLAIN_SERVICES = {
-    "/crowdbot/pause": PlainService("Empty", "set_simulation_state", {"state": {"state": PAUSED}}, "pause"),
-    "/crowdbot/unpause": PlainService("Empty", "set_simulation_state", {"state": {"state": PLAYING}}, "go on"),
+    "/crowdbot/pause": PlainService("Empty", "set_simulation_state", {"state": {"state": si.STATE_PAUSED}}, "pause"),
+    "/crowdbot/unpause": PlainService("Empty", "set_simulation_state", {"state": {"state": si.STATE_PLAYING}}, "go on"),
     "/crowdbot/reset": PlainService("Empty", "reset_simulation", {}, "begin the trial again, as another episode"),
     "/crowdbot/step": PlainService("Trigger", "step_simulation", {"steps": 1}, "one step while paused"),
 }

@@ -14,7 +14,7 @@ from typing import Any
 from crowdbot.bridges.fields import fields_of, memory_size, message_of
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import SERVICES, RobotInterface, interface_store, request_kind, response_kind
-from crowdbot.bridges.run_control import PAUSED, PLAYING
+from crowdbot.bridges.simulation_interfaces import STATE_PAUSED, STATE_PLAYING
 from crowdbot.bridges.socket_server import Backlog, MessageQueue
 from crowdbot.bridges.socket_transport import SessionGraph
 from crowdbot.core import InputError
@@ -347,7 +347,9 @@ class FoxgloveSession:
         sought, playing = False, command == 0
         try:
             self._check(STATE, "services")
-            graph.inbox.call(STATE, {"state": {"state": PLAYING if playing else PAUSED}}, _ignore, "foxglove")
+            graph.inbox.call(
+                STATE, {"state": {"state": STATE_PLAYING if playing else STATE_PAUSED}}, _ignore, "foxglove"
+            )
             if speed != graph.speed:  # the app sends the speed that it shows with every request
                 graph.inbox.asked_pace.set_rate(speed)
                 graph.speed = speed

@@ -23,7 +23,7 @@ from aiohttp import web
 from crowdbot.bridges.fields import fields_of
 from crowdbot.bridges.inbox import Inbox
 from crowdbot.bridges.interface import STATE, InputTopic, OutputTopic, RobotInterface
-from crowdbot.bridges.run_control import QUITTING
+from crowdbot.bridges.simulation_interfaces import STATE_QUITTING
 from crowdbot.bridges.simulation_services import PLAIN_SERVICES, PlainService
 from crowdbot.core import InputError, close_listener, is_loopback
 from crowdbot.messages import Messages, Ros1Messages
@@ -814,7 +814,7 @@ class Ros1Session:
     def _ended(self, reason: str) -> None:
         """End the run: the master has another node of this name, or a user has killed this one."""
         with contextlib.suppress(InputError):
-            request = {"state": {"state": QUITTING}}
+            request = {"state": {"state": STATE_QUITTING}}
             self.inbox.call("/crowdbot/set_simulation_state", request, lambda response: None, "ros1")
         self.end()
 

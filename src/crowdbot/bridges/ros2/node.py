@@ -22,7 +22,8 @@ from crowdbot.bridges.interface import (
     RobotInterface,
     interface_store,
 )
-from crowdbot.bridges.simulation_services import FAILED, PLAIN_SERVICES, PlainService, result
+from crowdbot.bridges.simulation_interfaces import RESULT_OPERATION_FAILED
+from crowdbot.bridges.simulation_services import PLAIN_SERVICES, PlainService, result
 from crowdbot.bridges.transport import is_among
 from crowdbot.core import InputError, MissingExtra, import_optional
 from crowdbot.recording import StepMessage
@@ -91,7 +92,7 @@ def _callback(name: str, inbox: Inbox, sender: str) -> Callable[[Any, Any], Any]
             inbox.call(name, message_fields(request), answers.put, sender)
             fields = answers.get(timeout=ANSWER_TIME)
         except (InputError, queue.Empty) as error:
-            fields = result(FAILED, str(error) or UNANSWERED)
+            fields = result(RESULT_OPERATION_FAILED, str(error) or UNANSWERED)
         return fill_message(response, fields)
 
     return call

@@ -202,9 +202,9 @@ class RosGraph(SessionGraph):
 
     def positional(self, service: str, values: Sequence[Any]) -> Mapping[str, Any]:
         """Return the fields of a request that is given as a list."""
-        one = SERVICES.get(service.rpartition("/")[2])
-        names = re.findall(r"(\w+)$", one.request, flags=re.M) if one is not None else []
-        return dict(zip(names, values, strict=False))
+        definition = SERVICES.get(service.rpartition("/")[2])
+        fields = interface_store().fielddefs[request_kind(definition)][1] if definition is not None else []
+        return {name: value for (name, _), value in zip(fields, values, strict=False)}
 
     def collect_subscriptions(self) -> None:
         """Collect the topics that clients subscribe."""
