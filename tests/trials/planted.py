@@ -181,7 +181,7 @@ KINDS = (
     Kind(
         'control-period="0.1"', 'control-period="0.03"', "<robot> control-period 0.03 s is shorter than the time step"
     ),
-    Kind('period="0.2"', 'period="0.02"', "<recording> recording period 0.02 s is shorter than the time step"),
+    Kind('period="0.2"', 'period="0.02"', "<recording> period 0.02 s is shorter than the time step"),
     Kind(
         'path="spawner[pairs]/count"',
         'path="spawner[pair]/count"',

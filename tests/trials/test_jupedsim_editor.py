@@ -10,6 +10,7 @@ import random
 
 import pytest
 
+from crowdbot.cli import main
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import CollisionFreeSpeed, SocialForce
 from crowdbot.recording import run
@@ -67,6 +68,18 @@ def test_a_scenario_of_the_editor_runs(tmp_path):
     assert (type(trial.crowd), trial.duration, trial.end.empty) == (CollisionFreeSpeed, 60.0, True)
     assert notes == ("robots are not in the file: people react to the robots that you add",)
     assert run(dataclasses.replace(trial, duration=5.0)).outcome == "finished"
+
+
+def test_a_scenario_that_cannot_run_is_written_with_its_error_and_the_status_of_check(tmp_path, capsys):
+    (tmp_path / "geometry.wkt").write_text(WKT)
+    (tmp_path / "config.json").write_text(
+        json.dumps(changed(("config/simulation_settings/simulationParams/max_simulation_time", 0.01)))
+    )
+    out = tmp_path / "full.xml"
+    assert main(["new", "trial", str(out), "--import", str(tmp_path / "config.json")]) == 2
+    assert "errors, mend them before a run:" in capsys.readouterr().out
+    assert out.is_file()
+    assert main(["check", str(out)]) == 2
 
 
 WEIGHTS = (

@@ -113,8 +113,7 @@ def main(options: argparse.Namespace) -> int:
 
         files = {options.file: schema()}
     elif options.original is not None:
-        _import_trials(options)
-        return 0
+        return _import_trials(options)
     elif options.kind == "trial":
         files = {options.file: trial_xml(_trial(options)), **files}
     for file, text in files.items():
@@ -236,7 +235,8 @@ def _remove(copy: Path) -> None:
         copy.unlink(missing_ok=True)
 
 
-def _import_trials(options: argparse.Namespace) -> None:
+def _import_trials(options: argparse.Namespace) -> int:
+    """Write the trials of a file of another simulator; return 2 if one cannot run as it is, like ``check``."""
     from crowdbot.core import TrialError
     from crowdbot.trials import check_trial, import_trial, trial_xml
 
@@ -255,11 +255,12 @@ def _import_trials(options: argparse.Namespace) -> None:
             check_trial(trial)
         except TrialError as error:
             problems += [f"{file.name}: {sentence}" for sentence in error.problems]
-    for title, rows in (("not imported", done.left_out), ("errors", problems)):
+    for title, rows in (("not imported", done.left_out), ("errors, mend them before a run", problems)):
         if rows:
             print(f"{title}:")
             for sentence in rows:
                 print(f"  - {sentence}")
+    return 2 if problems else 0
 
 
 def _copy_map(trial: Trial, folder: Path) -> list[str]:

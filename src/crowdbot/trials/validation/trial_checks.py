@@ -201,8 +201,8 @@ def _periods(checked: ValidationContext) -> Problems:
 
 def _all_periods(trial: Trial) -> Iterator[tuple[Any, str, float]]:
     """Yield all periods: the element, a name, and the period [s]."""
-    yield trial.recording, "recording period", trial.recording.period
-    yield trial.recording, "recording markers", trial.recording.markers
+    yield trial.recording, "period", trial.recording.period
+    yield trial.recording, "markers", trial.recording.markers
     for robot in trial.robots:
         yield robot, "control-period", robot.control_period
         for mount in robot.sensors:
@@ -266,7 +266,7 @@ def _too_long(trial: Trial) -> Problems:
     if trial.recording.period > trial.duration:
         yield (
             trial.recording,
-            f"recording period {trial.recording.period:g} s is longer than the duration of {trial.duration:g} s",
+            f"period {trial.recording.period:g} s is longer than the duration of {trial.duration:g} s",
         )
 
 
@@ -288,7 +288,7 @@ def _too_large(trial: Trial) -> Problems:
     if scenes * agents > MOST_VALUES:
         yield (
             trial.recording,
-            f"recording period {trial.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
+            f"period {trial.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
             f" {MOST_VALUES} positions in total; use a longer period, a shorter duration or fewer people",
         )
 
