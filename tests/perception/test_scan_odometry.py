@@ -39,6 +39,22 @@ def test_a_round_among_walking_people_ends_near_its_begin():
     assert pose.heading[0] == pytest.approx(6.28, abs=0.01)
 
 
+def test_errors_of_rounds_in_a_place_that_was_seen_do_not_add_up():
+    odometry, state, errors = ScanOdometry(), None, []
+    for k in range(4 * 157):
+        people = [[3.0 - 0.05 * (k % 120), 0.5], [-3.0, -2.5 + 0.03 * (k % 150)], [0.02 * (k % 150), -2.0]]
+        pose, state = odometry.update(scan_at(k, drive(k), people, noise=0.03), state)
+        errors.append(np.hypot(*(pose.position[0] - drive(k).position[0])))
+    assert errors[156::157] == pytest.approx(np.zeros(4), abs=0.01)  # key scan on key scan: 0.03 m after four rounds
+    for k in range(4 * 157, 5 * 157):
+        _, state = odometry.update(scan_at(k, drive(k)), state)
+    x, y = state.points.T
+    room, block = (x > -3.7) & (x < 4.7) & (y > -2.7) & (y < 3.7), (x > 0.7) & (x < 2.3) & (y > 1.7)
+    column = np.hypot(x - 3.0, y + 1.5) < 0.3
+    assert not np.any(room & ~block & ~column)  # people have left the map
+    assert len(state.points) < 1000  # the map does not grow with the rounds
+
+
 def test_a_scan_without_returns_continues_the_motion():
     odometry, state = ScanOdometry(), None
     for k in range(10):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,12 @@ SPREAD = 0.02
 """Smallest scale of the residuals [m] beyond which a pair counts less."""
 SURFACE = 0.25
 """Points farther apart than this [m], plus 8 beam spacings, are not of one surface."""
+CELL = 0.1
+"""Width of a cell of the ground [m], of which the map has one point."""
+KEPT = 10.0
+"""Points of the map are kept up to this distance from the scanner [m]."""
+BEHIND = 0.2
+"""A point of the map is dropped if beams end farther than this behind it [m]."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +37,9 @@ class ScanOdometryState:
     """State of :class:`ScanOdometry`.
 
     Fields:
-        points, normals: ``[P, 2]`` of the surfaces of the key scan, in its frame [m].
-        key, pose, step: ``[3]`` poses x, y [m] and heading [rad] of the key scan and of the last scan, and the last
-            motion in the frame of the scan before.
+        points, normals: ``[P, 2]`` of the surfaces around the scanner, in the frame of the first scan [m].
+        key, pose, step: ``[3]`` poses x, y [m] and heading [rad] of the last scan that was added to these points and of
+            the last scan, and the last motion in the frame of the scan before.
     """
 
     points: Floats
@@ -47,16 +53,18 @@ class ScanOdometryState:
 class ScanOdometry:
     """Odometry of a planar scanner by matching of scans; the first scan is at the origin.
 
-    Each scan is placed on a key scan by the iterative closest point with the distance from the line through the
-    neighbouring points (Censi (2008), An ICP variant using a point-to-line metric, doi 10.1109/ROBOT.2008.4543181),
-    from the pose that the last motion predicts. Pairs with large distances, such as those on people, have small
-    weights. A scan becomes the key scan after a motion by ``distance`` or ``turn``, or if it overlaps too little. Along
-    a corridor without ends the motion is not observable, and errors of key scans add up.
+    Each scan is placed on a map of the surfaces around it by the iterative closest point with the distance from the
+    line through the neighbouring points (Censi (2008), An ICP variant using a point-to-line metric, doi
+    10.1109/ROBOT.2008.4543181), from the pose that the last motion predicts. Pairs with large distances, such as those
+    on people, have small weights. A scan is added to the map after a motion by ``distance`` or ``turn``, or if it
+    overlaps too little: its points in cells that have none yet, so that a place that was seen before corrects the pose.
+    Points through which beams pass by then, such as those of people who have walked on, are dropped. Along a corridor
+    without ends the motion is not observable, and in new surroundings errors add up.
 
     Fields:
         search: largest distance of two points of a pair [m].
-        distance, turn: motion after which a scan becomes the key scan [m], [rad].
-        overlap: share of the points with a partner below which it does so, too.
+        distance, turn: motion after which a scan is added to the map [m], [rad].
+        overlap: share of the points with a partner below which it is added, too.
 
     Raises:
         InputError: a value is not allowed.
@@ -99,18 +107,18 @@ class ScanOdometry:
         points, normals, flat = _surfaces(reading)
         if state is None:
             zero = np.zeros(3)
-            return _pose(zero), ScanOdometryState(points[flat], normals[flat], zero, zero, zero)
-        guess = _compose(_inverse(state.key), _compose(state.pose, state.step))
-        relative, overlap = self._match(state, points, guess)
-        pose = _compose(state.key, relative)
-        step = _compose(_inverse(state.pose), pose)
+            none = ScanOdometryState(np.zeros((0, 2)), np.zeros((0, 2)), zero, zero, zero)
+            return _pose(zero), _added(none, reading, points[flat], normals[flat])
+        pose, overlap = self._match(state, points, _compose(state.pose, state.step))
+        moved = replace(state, pose=pose, step=_compose(_inverse(state.pose), pose))
+        relative = _compose(_inverse(state.key), pose)
         far = math.hypot(relative[0], relative[1]) > self.distance or abs(relative[2]) > self.turn
         if far or overlap < self.overlap:
-            return _pose(pose), ScanOdometryState(points[flat], normals[flat], pose, pose, step)
-        return _pose(pose), ScanOdometryState(state.points, state.normals, state.key, pose, step)
+            moved = _added(moved, reading, points[flat], normals[flat])
+        return _pose(pose), moved
 
     def _match(self, state: ScanOdometryState, points: Floats, guess: Floats) -> tuple[Floats, float]:
-        """Return the pose in the frame of the key scan, and the share of the points that have a partner there."""
+        """Return the pose, and the share of the points that have a partner in the map."""
         from scipy.spatial import cKDTree
 
         if len(state.points) < FEWEST:
@@ -149,6 +157,28 @@ def _surfaces(scan: Scan) -> tuple[Floats, Floats, Bools]:
     flat[:2] = flat[-2:] = False
     normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.maximum(length, 1e-12)[:, None]
     return points, normals, flat
+
+
+def _added(state: ScanOdometryState, scan: Scan, points: Floats, normals: Floats) -> ScanOdometryState:
+    """Return the state with the ``points`` and ``normals`` ``[P, 2]`` of surfaces of the last scan in its map."""
+    kept = np.hypot(*(state.points - state.pose[:2]).T) < KEPT
+    kept &= ~_seen_through(scan, _place(_inverse(state.pose), state.points))
+    placed, turned = _place(state.pose, points), _place(np.array([0.0, 0.0, state.pose[2]]), normals)
+    cells = np.floor(np.concatenate([state.points[kept], placed]) / CELL)
+    _, first = np.unique(cells, axis=0, return_index=True)  # a point of the map comes before the new ones of its cell
+    both = np.concatenate([state.points[kept], placed])[first], np.concatenate([state.normals[kept], turned])[first]
+    return replace(state, points=both[0], normals=both[1], key=state.pose)
+
+
+def _seen_through(scan: Scan, points: Floats) -> Bools:
+    """Return which points ``[P, 2]`` in the frame of the scanner have three beams that end behind them."""
+    ranges = np.where(np.isfinite(scan.ranges[0]), scan.ranges[0], 0.0)  # a beam without a return shows nothing
+    spacing = float(np.median(np.diff(scan.angles)))
+    beam = np.rint((np.arctan2(points[:, 1], points[:, 0]) - scan.angles[0]) / spacing).astype(np.int64)
+    inside = (beam > 0) & (beam < len(ranges) - 1)
+    near = np.clip(beam, 1, len(ranges) - 2)
+    clear = np.minimum(np.minimum(ranges[near - 1], ranges[near]), ranges[near + 1])
+    return np.asarray(inside & (clear > np.hypot(points[:, 0], points[:, 1]) + BEHIND))
 
 
 def _place(pose: Floats, points: Floats) -> Floats:
