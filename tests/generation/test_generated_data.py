@@ -15,8 +15,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError, UnknownName
-from crowdbot.generation import RECIPES, GenerationPlan, find_recipe, generate, occluded_shares
+from crowdbot.core import InputError
+from crowdbot.generation import RECIPES, GenerationPlan, generate, occluded_shares
 from crowdbot.recording import read_episode
 from crowdbot.sensors import RGBCamera
 from crowdbot.simulation import simulate
@@ -257,5 +257,3 @@ def test_recipes_can_be_made() -> None:
         trials = [load_trial(name, **values) for name, values in recipe.trials]
         plan = GenerationPlan(trials, range(recipe.seeds), recipe.sensors)
         assert len(set(plan.names)) == len(plan.variants)
-    with pytest.raises(UnknownName, match="recipe 'flows'"):
-        find_recipe("flows")

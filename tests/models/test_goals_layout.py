@@ -23,7 +23,7 @@ def walk(start, velocity, rows=8):
 
 def test_the_exit_that_comes_nearer_is_the_likely_one():
     layout = EnvironmentLayout([(10.0, 0.0), (0.0, 10.0), (-10.0, 0.0)], straight=0.2)
-    chance = layout.posterior(walk((0.0, 0.0), (0.2, 1.2)))[0, 0]
+    chance = layout.choices(walk((0.0, 0.0), (0.2, 1.2))).weight[0, 0]
     assert np.argmax(chance) == 2
     assert chance[2] > 0.5
     assert chance[3] < 0.05
@@ -36,7 +36,7 @@ def test_the_exit_that_comes_nearer_is_the_likely_one():
 def test_who_walks_to_no_exit_goes_straight_on():
     layout = EnvironmentLayout([(10.0, 0.0)])
     past = walk((0.0, 0.0), (-1.3, 0.0))
-    assert layout.posterior(past)[0, 0, 0] > 0.95
+    assert layout.choices(past).weight[0, 0, 0] > 0.95
     assert layout.resolve(past)[0, 0] == pytest.approx([-26.0, 0.0], abs=0.2)
 
 
@@ -60,7 +60,7 @@ def test_an_exit_behind_a_wall_is_reached_by_the_corner():
 
 def test_an_exit_without_a_way_is_out_of_the_question():
     layout = EnvironmentLayout([(5.0, 4.0), (20.0, 4.0)], walls=[ROOM])
-    chance = layout.posterior(walk((3.0, 4.0), (1.2, 0.0)))[0, 0]
+    chance = layout.choices(walk((3.0, 4.0), (1.2, 0.0))).weight[0, 0]
     assert chance[2] == 0.0
     assert chance[:2].sum() == pytest.approx(1.0)
 

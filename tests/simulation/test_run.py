@@ -19,8 +19,21 @@ from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.recording import read_episode, run
 from crowdbot.sensors import Gaussian, Lidar2D, Scan
-from crowdbot.simulation import Episode, EpisodeLog, RunFailureWarning, Simulation, StopRequest, run_to_end, start_scene
-from crowdbot.trials import Mount, RobotGoal, RobotSpec, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
+from crowdbot.simulation import Episode, EpisodeLog, RunFailureWarning, Simulation, StopRequest, run_to_end
+from crowdbot.simulation.world_builder import start_scenes
+from crowdbot.trials import (
+    Mount,
+    PeopleBatch,
+    RobotGoal,
+    RobotSpec,
+    Spawner,
+    Stage,
+    Trial,
+    Wall,
+    load_trial,
+    parse_trial,
+    place,
+)
 from crowdbot.world import DifferentialDrive
 from samples import sample
 from trial_texts import GOOD
@@ -332,7 +345,7 @@ def test_tracks_need_a_multiple_of_the_recording_period() -> None:
 
 def test_the_scene_begins_with_people_who_walk_to_their_goals() -> None:
     people, _ = place(TINY.stage, TINY.spawners, TINY.robots, 3)
-    scene = start_scene(TINY, people)
+    scene = start_scenes(TINY, PeopleBatch.of([people]), np.array([0]), TINY.stage.as_walls())
     assert isinstance(scene, Scene)
     assert scene.external[0].tolist() == [False] * 4 + [True]
     assert np.allclose(np.hypot(*scene.velocity[0, :4].T), people.speed)

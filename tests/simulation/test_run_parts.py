@@ -18,10 +18,10 @@ from crowdbot.simulation import (
     apply_overrides,
     run_to_end,
     simulate,
-    start_scene,
 )
 from crowdbot.simulation.simulation import SUCCESS
-from crowdbot.trials import Trial, parse_trial, place
+from crowdbot.simulation.world_builder import start_scenes
+from crowdbot.trials import PeopleBatch, Trial, parse_trial, place
 from space_trials import LEAN
 from trial_texts import GOOD
 
@@ -97,7 +97,7 @@ def test_progress_grows_to_one_and_each_share_is_told_once() -> None:
 
 def test_people_begin_at_their_speed_towards_their_goals_and_robots_at_rest() -> None:
     people, _ = place(TINY.stage, TINY.spawners, TINY.robots, 3)
-    scene = start_scene(TINY, people, spare=2)
+    scene = start_scenes(TINY, PeopleBatch.of([people]), np.array([2]), TINY.stage.as_walls())
     count = len(people)
     assert scene.shape == (1, count + 1 + 2)
     assert scene.active[0].tolist() == [True] * (count + 1) + [False, False]

@@ -30,7 +30,7 @@ def test_depth_is_metric_and_everyone_is_named(world):
     assert seen.rgb.shape == (120, 160, 3)
     assert seen.rgb.dtype == np.uint8
     assert set(np.unique(seen.segmentation)) == {-4, -3, -2, -1, 1}
-    up = (59.5 - np.arange(120)) / camera.focal_length
+    up = (59.5 - np.arange(120)) / (60.0 / math.tan(0.5 * camera.view))
     wall = seen.segmentation == -2
     assert seen.depth[wall] == pytest.approx(4.99, abs=0.005)
     floor = seen.segmentation == -3

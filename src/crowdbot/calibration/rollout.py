@@ -87,11 +87,11 @@ class Rollout:
             return self.radius
         return np.where(np.isnan(past.radius), self.radius, past.radius)
 
-    def predict_positions(self, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
+    def predict_positions(self, past: Windows, steps: int) -> Floats:
         """Return the predicted positions of people present at the last row: ``[W, steps, A, 2]`` [m]."""
         if not np.any(past.present[:, -1:]):
             return np.zeros((len(past), steps, *past.position.shape[2:]))
-        return self.run(self.scene(past, past.position.shape[1] - 1), past, steps, rng)
+        return self.run(self.scene(past, past.position.shape[1] - 1), past, steps)
 
     def run(self, scene: Scene, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
         """Return the positions in a scene over ``steps`` rows: ``[E, steps, A, 2]`` [m].

@@ -23,13 +23,13 @@ PER_FILE = (
 )
 
 
-def add_recordings(parser: CommandParser, predict: int = 12, required: bool = True) -> None:
+def add_recordings(parser: CommandParser, required: bool = True) -> None:
     """Add the options for files, their time base and their windows."""
     group = parser.add_argument_group("recordings")
     add = group.add_argument
     add("--data", nargs="+", type=Path, required=required, metavar="PATH", help="recordings")
     add("--observe", type=int, default=8, metavar="ROWS", help="observed rows of a window (default: 8)")
-    add("--predict", type=int, default=predict, metavar="ROWS", help=f"predicted rows of a window (default: {predict})")
+    add("--predict", type=int, default=12, metavar="ROWS", help="predicted rows of a window (default: 12)")
     add(
         "--protocol",
         default="all",

@@ -376,7 +376,7 @@ def _convert_attribute(element: Any, part: FieldSpec, value: Any) -> Any:
     raise InputError(f"{type(element).__name__}: {part.name}={quote_value(value)} is not a {part.kind.__name__}")
 
 
-def quote_value(value: Any, limit: int = 60) -> str:
+def quote_value(value: Any) -> str:
     """Return a value in quotes for a message; long values are shortened."""
     text = str(value)
-    return f'"{text if len(text) <= limit else text[: limit - 3] + "..."}"'
+    return f'"{text if len(text) <= 60 else text[:57] + "..."}"'

@@ -2,7 +2,7 @@
 
 from .card import DataCard, card_of, card_text, generate
 from .episode_labels import LABEL_FORMATS, LabelFiles, export_labels
-from .plan import FORMATS, RECIPES, GenerationPlan, Recipe, ShardJob, find_recipe
+from .plan import FORMATS, RECIPES, GenerationPlan, Recipe, ShardJob
 from .sample_log import SampleLog, occluded_shares
 from .shard import Shard, make_shard
 
@@ -20,7 +20,6 @@ __all__ = [
     "card_of",
     "card_text",
     "export_labels",
-    "find_recipe",
     "generate",
     "make_shard",
     "occluded_shares",

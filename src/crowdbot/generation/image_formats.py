@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -96,13 +96,12 @@ def encode_mask(mask: NDArray[np.bool_]) -> dict[str, Any]:
     return {"counts": [0, *counts] if flat[0] else counts, "size": list(mask.shape)}
 
 
-def join_annotations(files: Iterable[Path], info: Mapping[str, Any], categories: Sequence[str] = ("person",)) -> Any:
+def join_annotations(files: Iterable[Path], info: Mapping[str, Any]) -> Any:
     """Return the annotations of all shards with new numbers, as one COCO object.
 
     Args:
         files: ``annotations.json`` of the shards.
         info: description of the data.
-        categories: names of the categories, numbered from 1.
     """
     images: list[dict[str, Any]] = []
     annotations: list[dict[str, Any]] = []
@@ -115,8 +114,8 @@ def join_annotations(files: Iterable[Path], info: Mapping[str, Any], categories:
             item | {"id": item["id"] + before, "image_id": item["image_id"] + shift} for item in part["annotations"]
         ]
     bones = {"keypoints": list(KEYPOINTS), "skeleton": [list(edge) for edge in KEYPOINT_EDGES]}
-    names = [{"id": k + 1, "name": name, **(bones if name == "person" else {})} for k, name in enumerate(categories)]
-    return {"info": dict(info), "images": images, "annotations": annotations, "categories": names}
+    person = {"id": 1, "name": "person", **bones}
+    return {"info": dict(info), "images": images, "annotations": annotations, "categories": [person]}
 
 
 CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])

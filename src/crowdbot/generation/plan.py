@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from crowdbot.core import CrowdbotError, InputError, UnknownName, did_you_mean
+from crowdbot.core import CrowdbotError, InputError, did_you_mean
 from crowdbot.sensors import PRESETS, DepthCamera, Lidar2D, Lidar3D, RGBCamera, Sensor, preset
 from crowdbot.trials import Mount, Trial, check_trial, expand_sweeps, trial_xml
 
@@ -273,17 +273,3 @@ RECIPES: Mapping[str, Recipe] = MappingProxyType(
     }
 )
 """Built-in recipes, by name."""
-
-
-def find_recipe(name: str) -> Recipe:
-    """Return a built-in recipe.
-
-    Raises:
-        UnknownName: there is no recipe of this name.
-
-    >>> find_recipe("flow").sensors
-    ('sick-tim571',)
-    """
-    if name not in RECIPES:
-        raise UnknownName("recipe", name, RECIPES)
-    return RECIPES[name]

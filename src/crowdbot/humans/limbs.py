@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core import Paper
 from crowdbot.typing import Floats, Ints
 
 from .asset import Shapes, persons, shapes
@@ -16,14 +15,6 @@ ROUNDS = 12
 """Number of fit iterations; about 10 converge to 0.1 mm."""
 HOLD = 0.02
 """Weight of the initial guess in the fit, which bounds capsule ends without nearby vertices."""
-
-MASS_SOURCE = Paper(
-    "Paolo de Leva",
-    1996,
-    "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters",
-    "Journal of Biomechanics 29(9), table 4",
-    "10.1016/0021-9290(95)00178-6",
-)
 
 
 class Limb(NamedTuple):
@@ -83,7 +74,8 @@ def mass_shares(sex: str) -> Floats:
 
     Without a sex, the mean of men and women is used.
 
-    Source: de Leva 1996, doi:10.1016/0021-9290(95)00178-6, table 4.
+    Source: Paolo de Leva, "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters", Journal of Biomechanics
+    29(9), 1996, table 4, doi:10.1016/0021-9290(95)00178-6.
 
     >>> shares = mass_shares("f")
     >>> round(float(shares.sum()), 9), round(float(shares[0]), 3)

@@ -30,7 +30,6 @@ from .reading_codecs import (
     encode_reading,
     reading_table,
     reading_topics,
-    unencoded_fields,
 )
 from .ros1 import Ros1Messages
 
@@ -70,6 +69,5 @@ __all__ = [
     "read_forces",
     "reading_table",
     "reading_topics",
-    "unencoded_fields",
     "unpack_arrays",
 ]

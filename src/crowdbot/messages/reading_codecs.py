@@ -10,7 +10,6 @@ topics of a sensor and the bridges use this row.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import re
 from collections.abc import Mapping
@@ -297,13 +296,6 @@ CODECS: dict[type[Reading], Codec] = {
     ),
 }
 """Codecs by class of readings; a subclass uses the codec of its parent."""
-
-
-def unencoded_fields() -> list[type[Reading]]:
-    """Return the classes of readings of ``crowdbot.sensors`` without a codec."""
-    classes = [getattr(sensors, name) for name in sensors.__all__]
-    own = [cls for cls in classes if isinstance(cls, type) and issubclass(cls, Reading) and cls is not Reading]
-    return [cls for cls in own if dataclasses.is_dataclass(cls) and cls not in CODECS]
 
 
 def reading_topics(sensor: Sensor) -> dict[str, str]:

@@ -38,7 +38,6 @@ from .statistics import EpisodeStatistics, RunSummary, robot_metrics
 from .step_batch import BatchReadings, StepBatch
 from .step_record import WALL, RobotContact, StepRecord
 from .variant_template import VariantTemplate
-from .world_builder import start_scene
 
 __all__ = [
     "KEYFRAMES",
@@ -108,7 +107,6 @@ __all__ = [
     "simulate",
     "simulate_seeds",
     "simulate_variants",
-    "start_scene",
     "state_of",
     "tracks_of",
     "warn_of_failure",

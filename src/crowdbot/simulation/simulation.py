@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -252,7 +252,7 @@ class Simulation:
 
     def _repr_svg_(self) -> str:
         """Return a drawing of the first environment for notebooks, with doors at their current angle."""
-        return simulation_svg(self)
+        return _simulation_svg(self, 0)
 
     def is_eventful(self) -> Bools:
         """Return ``[E]`` whether there is something to record although no scene is due."""
@@ -528,7 +528,7 @@ def new_events(events: Sequence[Ended], told: NDArray[np.int64], environment: in
     return tuple(new)
 
 
-def simulation_svg(simulation: Any, environment: int = 0) -> str:
+def _simulation_svg(simulation: Simulation, environment: int) -> str:
     """Return an SVG drawing of an environment: stage with ground, doors at their current angle, people and robots."""
     doors, stage = simulation.world.part(environment)[0].doors, simulation.trial.stage
     shares = {}

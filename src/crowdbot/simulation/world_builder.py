@@ -67,13 +67,8 @@ def doors_of(trial: Trial) -> Doors | None:
     return Doors(trial.stage.doors, pushed=trial.world == "physics")
 
 
-def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
-    """Return the initial scene, E = 1: people walking towards their goals, robots at rest, free slots."""
-    return start_scenes(trial, PeopleBatch.of([people]), np.array([spare]), trial.stage.as_walls())
-
-
 def start_scenes(trial: Trial, people: PeopleBatch, spare: NDArray[np.int64], walls: Walls) -> Scene:
-    """Return the initial scene of E environments.
+    """Return the initial scene of E environments: people walking towards their goals, robots at rest, free slots.
 
     Args:
         trial: the trial.

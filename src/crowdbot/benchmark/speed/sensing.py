@@ -57,9 +57,9 @@ def rays_of_limbs(rings: int = 0) -> Measurement:
     )  # fmt: skip
 
 
-def _people_with_limbs(people: int, seed: int = 0) -> Scene:
+def _people_with_limbs(people: int) -> Scene:
     """Return people at 0.5 per square metre in a room, each with 15 capsules from 0.1 to 1.6 m above the floor."""
-    random = stream(seed, "limbs")
+    random = stream(0, "limbs")
     side = math.sqrt(people / 0.5)
     place = random.uniform(0.0, side, (people, 2))
     flat = np.repeat(place, LIMBS, axis=0) + random.uniform(-0.2, 0.2, (people * LIMBS, 2))
@@ -139,11 +139,11 @@ def rays_of_skins(level: int) -> Measurement:
     )  # fmt: skip
 
 
-def _dressed(level: int, people: int = 50) -> list[Scene]:
+def _dressed(level: int) -> list[Scene]:
     """Return five instants of walking people at 0.5 per square metre in a room, as skins."""
     from crowdbot.humans import Gait, People
 
-    random = stream(0, "skins")
+    people, random = 50, stream(0, "skins")
     side = math.sqrt(people / 0.5)
     place, heading = random.uniform(0.0, side, (people, 2)), random.uniform(-math.pi, math.pi, people)
     who = People.sample(people, random)

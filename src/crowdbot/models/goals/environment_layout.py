@@ -166,10 +166,6 @@ class EnvironmentLayout(Goal):
         way = np.where(here[..., None, None], rotate(velocity[:, :, None], turn), 0.0)
         return Choices(place[:, :, None] + self.horizon * way, weight)
 
-    def posterior(self, past: Windows) -> Floats:
-        """Return the probabilities of straight on and of each exit, ``[W, A, G + 1]``; 0 for absent people."""
-        return self._candidates(past)[2]
-
     def _candidates(self, past: Windows) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
         """Return velocity ``[W, A, 2]``, turn [rad] and weight ``[W, A, G + 1]`` of candidates, and presence."""
         if past.units != "m":

@@ -152,20 +152,18 @@ def residuals(past: Windows, future: Windows) -> Floats:
     return rotate(ahead - step[:, None] * np.arange(1.0, PREDICTED_ROWS + 1.0)[:, None], heading_vectors(people.past))
 
 
-def cluster_centers(
-    points: Floats, count: int, seed: int = 0, rounds: int = 60, starts: int = 2
-) -> tuple[Floats, Floats]:
+def cluster_centers(points: Floats, count: int, seed: int = 0) -> tuple[Floats, Floats]:
     """Return ``count`` cluster centers of points ``[N, D]``, sorted by cluster size, and the relative sizes.
 
-    k-means with k-means++ initialization; the best of several starts.
+    k-means with k-means++ initialization and 60 iterations; the best of two starts.
     """
     rng = stream(seed, "anchors")
     if len(points) > POINTS:
         points = points[rng.permutation(len(points))[:POINTS]]
     best: tuple[float, Floats, Floats] | None = None
-    for _ in range(starts):
+    for _ in range(2):
         place = _start(points, count, rng)
-        for _ in range(rounds):
+        for _ in range(60):
             near = np.argmin(_squared_distances(points, place), axis=1)
             size = np.bincount(near, minlength=count)
             mean = np.stack([np.bincount(near, column, count) for column in points.T], axis=1)

@@ -52,7 +52,7 @@ def _count(density: float, length: float, width: float) -> int:
     return round(density * length * width)
 
 
-def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
+def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: float) -> Trial:
     """Return a corridor in which people walk east and west at densities [1/m2], and a robot goes east."""
     y = width / 2.0 - 0.25
     zone = box(-HALF + 0.5, -y, HALF - 0.5, y)
@@ -66,7 +66,7 @@ def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: flo
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(LENGTH, width),
-        robots=[robot((-gap, 0.0), (gap, 0.0))],
+        robots=[robot((-12.0, 0.0), (12.0, 0.0))],
     )
 
 

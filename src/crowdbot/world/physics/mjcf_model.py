@@ -277,7 +277,6 @@ def _person(slot: int) -> Element:
 
 LIMB_COUNT = len(LIMBS)
 LIMB_NAMES = tuple(limb.name for limb in LIMBS)
-LIMB_PARTS = np.array([("head", "torso", "arm", "leg").index(limb.region) for limb in LIMBS])
 
 
 def base_height(ground: Ground | None, scene: Scene, agent: int, robot: Robot) -> float:

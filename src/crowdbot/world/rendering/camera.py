@@ -97,8 +97,8 @@ class SceneCamera:
     Raises:
         InputError: a value is not allowed, or position and target are equal.
 
-    >>> SceneCamera((0.0, -5.0, 2.0), (0.0, 0.0, 1.0)).focal_length
-    415.69...
+    >>> SceneCamera((0.0, -5.0, 2.0), (0.0, 0.0, 1.0)).height
+    480
     """
 
     position: PointWaypoint
@@ -132,11 +132,6 @@ class SceneCamera:
             raise InputError(
                 f"SceneCamera: position {self.position} and target {self.target} must be two different points"
             )
-
-    @property
-    def focal_length(self) -> float:
-        """Focal length [pixels]; the principal point is the image centre."""
-        return 0.5 * self.height / math.tan(0.5 * self.view)
 
     def axes(self, robot_body: Floats) -> tuple[Floats, Floats, Floats]:
         """Return position, forward and up axis ``[3]`` in the world, for a robot link with the frame ``[4, 4]``."""

@@ -110,7 +110,6 @@ def _cut(text: str) -> str:
 Tree = tuple[Any, ...]
 MOST_DEPTH = 40
 """Maximum nesting of one expression."""
-COMPARISONS = ("<", ">", "<=", ">=", "==", "!=", "in", "not in", "is", "is not")
 BINARY = (("+", "-"), ("*", "/", "//", "%"))
 CONSTANTS = {"True": True, "False": False, "None": None, "true": True, "false": False}
 RESERVED = ("and", "or", "not", "in", "is", "if", "else", "for", "lambda")
