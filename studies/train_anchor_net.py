@@ -37,9 +37,14 @@ from crowdbot.evaluation import score_predictor
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import REACH
-from crowdbot.prediction.anchor_net.confidence import calibrate_confidence
 from crowdbot.prediction.anchor_net.filtered_line import LINE_SHARE
-from crowdbot.prediction.anchor_net.training import PRESETS, UPDATES, AnchorNetTraining, AnchorTraining
+from crowdbot.prediction.anchor_net.training import (
+    PRESETS,
+    UPDATES,
+    AnchorNetTraining,
+    AnchorTraining,
+    calibrate_confidence,
+)
 from crowdbot.prediction.anchor_net.training_data import (
     NO_AUGMENTATION,
     Augmentation,

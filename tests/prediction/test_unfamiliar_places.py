@@ -14,8 +14,8 @@ from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, Kalman
 from crowdbot.prediction.anchor_net.agent_frame import REACH, agent_features, agent_histories, heading_vectors, rotate
 from crowdbot.prediction.anchor_net.anchors import resample_paths, scatter_to_slots
 from crowdbot.prediction.anchor_net.filtered_line import filter_tracks, filtered_lines
-from crowdbot.prediction.anchor_net.out_of_distribution import out_of_distribution as score_of
 from crowdbot.prediction.anchor_net.predictor import _bends
+from crowdbot.prediction.anchor_net.predictor import out_of_distribution as score_of
 from crowdbot.prediction.pretrained_weights import load_pretrained
 from training_crowds import CROWD_LAYOUTS, CROWD_MODELS, simulated_crowds
 

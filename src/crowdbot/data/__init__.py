@@ -30,7 +30,7 @@ if TYPE_CHECKING:
         read_message,
     )
     from .motion import fill_gaps, observed_velocity, resample_rows, slice_rows, steady_velocity
-    from .place_layout import PlaceLayout
+    from .place_layout import PlaceLayout, walkable_rings
     from .protocols import PROTOCOLS, NoWindowError
     from .readers.columns import check_quantities
     from .readers.hdf5_arrays import read_hdf5_arrays
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from .track_writers import save
     from .trajectories import PrimaryScene, Trajectories
     from .trajnet_scenes import TRAJNET_CATEGORIES, primary_windows, scenes_of_category
-    from .walkable import walkable_rings
     from .windows import Windows
 
 __getattr__, __dir__, _ = lazy_exports(__name__)

@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.typing import Floats
 
+from .place_layout import walkable_rings
 from .readers.tables import ROBOT
 from .rows import runs
 from .track_table import PrimaryScene
 from .trajectories import Trajectories
-from .walkable import walkable_rings
 
 VERSION = 2
 """Version of the database layout of JuPedSim 1."""

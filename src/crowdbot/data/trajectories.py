@@ -26,8 +26,8 @@ from crowdbot.core import (
 from crowdbot.typing import Floats
 
 from .protocols import NoWindowError, cut_past, cut_windows
-from .resample import resample
 from .rows import runs
+from .source import MAX_ROWS
 from .track_table import PrimaryScene, TrackTable
 from .windows import Windows
 
@@ -42,6 +42,8 @@ OTHER_AGENTS = frozenset(
      "van", "veh", "vehicle")
 )  # fmt: skip
 """Labels of tracks that are not of pedestrians, in lower case, as in SDD, inD, CITR, KITTI and MOT Challenge."""
+WHOLE = 1e-6
+"""Tolerance for a new step that is a whole number of frames [frames]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -226,7 +228,42 @@ class Trajectories(TrackTable):
             InputError: dt or gap is not above 0.
             DataError: there would be more than 20 million rows.
         """
-        return resample(self, dt, gap)
+        for name, value in (("dt", dt), ("gap", gap)):
+            if value is not None and not (value > 0.0 and math.isfinite(value)):
+                raise InputError(f"resample: {name} {value} s must be above 0 and finite")
+        fps = self.fps
+        step = dt * fps
+        whole = abs(step - round(step)) < WHOLE and round(step) >= 1
+        step = float(round(step)) if whole else step
+        bridge = max(dt, self.dt) * 1.001 if gap is None else gap
+        order = np.lexsort((self.frame, self.id))
+        id, x, y = self.id[order], self.x[order], self.y[order]
+        since = (self.frame[order] - self.frame[0]).astype(np.float64)
+        begins = np.flatnonzero(np.concatenate([[True], np.diff(id) != 0]))
+        ends = np.concatenate([begins[1:], [len(id)]])
+        if np.sum(since[ends - 1] - since[begins]) / step > MAX_ROWS:
+            raise DataError(f"{self.name}: steps of {dt} s give more than {MAX_ROWS} rows; use a longer step")
+        parts: list[tuple[NDArray[Any], ...]] = []
+        for begin, end in zip(begins, ends, strict=True):
+            own = since[begin:end]
+            count = _steps_inside(own, step, bridge * fps)
+            place = [np.interp(count * step, own, axis[begin:end]) for axis in (x, y)]
+            parts.append((np.full(len(count), id[begin]), count, *place))
+        ids, counts, xs, ys = (np.concatenate(column) for column in zip(*parts, strict=True))
+        left = set(ids.tolist())
+        return dataclasses.replace(
+            self,
+            id=ids,
+            frame=self.frame[0] + counts * int(step) if whole else counts,
+            x=xs,
+            y=ys,
+            row_rate=1.0 / dt,
+            frame_step=int(step) if whole else 1,
+            robots=self.robots & left,
+            labels={key: label for key, label in self.labels.items() if key in left},
+            scenes=(),
+            clock_origin=self.clock_origin if whole else float(self.clock[0]),
+        )
 
     def windows(
         self, observe: int = 8, predict: int = 12, protocol: str = "all", near: float | None = None, late: str = "skip"
@@ -296,6 +333,19 @@ class Trajectories(TrackTable):
             labels={id: label for id, label in self.labels.items() if id in here},
             scenes=tuple(inside),
         )
+
+
+def _steps_inside(own: NDArray[np.float64], step: float, bridge: float) -> NDArray[np.int64]:
+    """Return the multiples of ``step`` [frames] inside one track, but not inside a gap longer than ``bridge``."""
+    tiny = 1e-9 * max(step, 1.0)
+    count = np.arange(math.ceil((own[0] - tiny) / step), math.floor((own[-1] + tiny) / step) + 1, dtype=np.int64)
+    holes = np.flatnonzero(np.diff(own) > bridge)
+    if len(holes) == 0 or len(count) == 0:
+        return count
+    at = count * step
+    before = np.clip(np.searchsorted(own, at + tiny, side="right") - 1, 0, len(own) - 1)
+    lost = np.isin(before, holes) & (at - own[before] > tiny)
+    return np.asarray(count[~lost])
 
 
 def _transform(points: Floats, matrix: Floats) -> Floats:

@@ -93,9 +93,9 @@ if TYPE_CHECKING:
     from .run_metrics import families_of as families_of
     from .runner import evaluate as evaluate
     from .scan_prediction.scan_plot import plot_scan_scores as plot_scan_scores
-    from .scan_prediction.scan_protocol import SOGMP as SOGMP
-    from .scan_prediction.scan_protocol import ScanProtocol as ScanProtocol
     from .scan_prediction.scan_scores import SCAN_SCORES as SCAN_SCORES
+    from .scan_prediction.scan_scores import SOGMP as SOGMP
+    from .scan_prediction.scan_scores import ScanProtocol as ScanProtocol
     from .scan_prediction.scan_scores import ScanScores as ScanScores
     from .scan_prediction.scan_scores import TruePeople as TruePeople
     from .scan_prediction.scan_scores import score_scans as score_scans

@@ -1,7 +1,6 @@
 """The evaluation tab: navigators compared over many runs, each of which can be watched."""
 
-from .evaluation_desk import EvaluationDesk
+from .evaluation_desk import RESULT, EvaluationDesk
 from .evaluation_request import EvaluationRequest
-from .imported_result import RESULT
 
 __all__ = ["RESULT", "EvaluationDesk", "EvaluationRequest"]

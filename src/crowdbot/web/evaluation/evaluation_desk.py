@@ -14,23 +14,27 @@ from typing import Any, ClassVar
 from crowdbot.core import InputError, builtin_classes
 from crowdbot.evaluation import (
     CellResult,
+    EvaluationCell,
+    EvaluationPlan,
     EvaluationResult,
     PairedComparison,
     load_evaluation,
     metric_title,
+    parse_methods,
     parse_statistic,
     remark_lines,
+    write_report,
 )
 from crowdbot.recording import record, write_trial_files
-from crowdbot.trials import Trial, builtin_trials, load_trial, trial_titles
+from crowdbot.trials import Trial, builtin_trials, load_builtin_trial, load_trial, trial_titles
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.jobs import Job, command_work
 from crowdbot.web.plain_json import plain_number
+from crowdbot.web.workspace import Workspace
 from crowdbot.world import builtin_robots
 
 from .evaluation_request import FILE, EvaluationRequest, describe_robots
-from .imported_result import RESULT, cell_of_result, import_result
 
 METRICS = (
     "success-rate", "person-collision-rate", "wall-collision-rate", "timeout-rate", "time-to-goal", "min-clearance",
@@ -269,3 +273,65 @@ def _sentences(comparisons: Sequence[PairedComparison]) -> list[str]:
         what = f"{where}, {metric_title(item.metric)}: {item.second} minus {item.first} = {item.difference}"
         sentences.append(f"{what}, p = {item.corrected:.3g} (corrected)")
     return sentences
+
+
+RESULT = "result.json"
+NAME = re.compile(r"[^\w.-]+")
+
+
+def import_result(path: Path, root: Path, metrics: tuple[str, ...]) -> str:
+    """Take a result into the folder of the evaluations, with a report; return its name there.
+
+    The same result again keeps its name.
+
+    Args:
+        path: the ``result.json``; its folder gives the name.
+        root: folder of the evaluations.
+        metrics: statistics of the report.
+
+    Raises:
+        EpisodeError: the file is no result of an evaluation.
+    """
+    result = load_evaluation(path)
+    uploaded = path.parent == root.parent  # to the folder of the session, whose name says nothing
+    stem = path.parent.name if path.name == RESULT and not uploaded else path.stem
+    base = NAME.sub("-", stem).strip("-. ")[:50] or "result"
+    content = path.read_bytes()
+    for k in range(1, 10_000):
+        folder = root / (base if k == 1 else f"{base}-{k}")
+        if not folder.exists():
+            break
+        if (folder / RESULT).is_file() and (folder / RESULT).read_bytes() == content:
+            return folder.name
+    folder.mkdir(parents=True)
+    statistics = [parse_statistic(name, result.metrics) for name in metrics]
+    write_report(result, folder / "report.html", statistics, comparisons=result.compare())
+    (folder / RESULT).write_bytes(content)
+    return folder.name
+
+
+def cell_of_result(cell: CellResult, space: Workspace) -> EvaluationCell:
+    """Return the trial of a row, built from the names in a result that was made elsewhere.
+
+    Args:
+        cell: the row.
+        space: trial files that are not built in must lie there, with the name of the trial.
+
+    Raises:
+        InputError: the trial is not there, or is not the one that was run.
+    """
+    name = cell.base or cell.trial
+    if name in builtin_trials():
+        trial = load_builtin_trial(name, folder=space.folder)
+    else:
+        files = [trial for trial in space.trials() if Path(trial).stem == name]
+        if not files:
+            raise InputError(
+                f"trial {name!r} of this result is not in the folder of the app; open its file there first"
+            )
+        trial = load_trial(space.folder / files[0])
+    plan = EvaluationPlan([trial], parse_methods(cell.method), robots=(cell.robot,), trust=False, folder=space.folder)
+    for found in plan.cells:
+        if found.hash == cell.hash:
+            return found
+    raise InputError(f"the trial {cell.trial} is not the one that was run; this version or its file is another")

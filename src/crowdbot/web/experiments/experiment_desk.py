@@ -7,7 +7,8 @@ import dataclasses
 import re
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,15 +17,21 @@ from crowdbot.experiments import (
     Abort,
     Answered,
     BackgroundRun,
+    Choice,
     Event,
     Experiment,
+    FreeText,
     Next,
+    Number,
     Pause,
     Repeat,
     Resume,
+    Scale,
     Session,
     SessionRunner,
     Start,
+    StreamOutlets,
+    StreamRecorder,
     builtin_experiments,
     is_experiment,
     load_experiment,
@@ -38,8 +45,73 @@ from crowdbot.web.desk import Desk, DeskWindows, Resource
 from crowdbot.web.scene import scene_resource
 from crowdbot.web.simulator import StageView
 
-from .question_form import question_form
-from .session_streams import SessionStreams, StreamChoice, chosen_streams
+
+@dataclass(frozen=True)
+class StreamChoice:
+    """What a session exchanges over the Lab Streaming Layer.
+
+    Fields:
+        send: whether events, poses of heads and poses of robots are sent.
+        record: names of streams, or ``PROPERTY=VALUE`` such as ``type=EEG``, that are recorded.
+    """
+
+    send: bool = False
+    record: tuple[str, ...] = ()
+
+
+class SessionStreams:
+    """Streams of a session, from its start to its end.
+
+    Args:
+        choice: which streams.
+        source: name of the sender, that of the experiment.
+
+    Raises:
+        MissingExtra: streams are wanted, and the package ``pylsl`` is not installed.
+    """
+
+    def __init__(self, choice: StreamChoice, source: str) -> None:
+        self.choice = choice
+        self.outlets = StreamOutlets(source) if choice.send else None
+        """Sink of step records and events, or None."""
+        self._recorder: StreamRecorder | None = None
+
+    def record(self, folder: Path) -> None:
+        """Begin to record in the folder of a participant.
+
+        Raises:
+            InputError: a stream does not exist, or carries texts.
+        """
+        if self.choice.record:
+            self._recorder = StreamRecorder(folder, self.choice.record)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of recorded samples by the name of the file."""
+        return {} if self._recorder is None else self._recorder.counts
+
+    def stop_recording(self) -> None:
+        """Close the recorded files.
+
+        Raises:
+            EpisodeError: a file could not be written.
+        """
+        recorder, self._recorder = self._recorder, None
+        if recorder is not None:
+            recorder.close()
+
+    def close(self) -> None:
+        """End all streams; raises as :meth:`stop_recording` does."""
+        with contextlib.ExitStack() as stack:
+            if self.outlets is not None:
+                stack.callback(self.outlets.close)
+            self.outlets = None
+            self.stop_recording()
+
+
+def chosen_streams(send: bool, record: Sequence[str]) -> StreamChoice:
+    """Return a choice; empty names are left out."""
+    return StreamChoice(bool(send), tuple(item.strip() for item in map(str, record) if item.strip()))
 
 
 class ExperimentDesk(Desk):
@@ -429,3 +501,26 @@ class TrialView:
         if self._shown is None:
             raise KeyError(path)
         return scene_resource(self._shown, path, query)
+
+
+def question_form(question: Choice | Scale | Number | FreeText) -> dict[str, Any]:
+    """Return a question as JSON: name, text, required, hint, kind and what the kind needs.
+
+    >>> question_form(Scale(name="comfort", text="How comfortable?", low=1, high=5))["steps"]
+    [1, 2, 3, 4, 5]
+    """
+    row: dict[str, Any] = {"name": question.name, "text": question.text, "required": question.required}
+    row["hint"] = question.hint
+    match question:
+        case Choice():
+            row |= {"kind": "choice", "multiple": question.multiple}
+            row["options"] = [{"value": option.value, "text": option.label} for option in question.options]
+        case Scale():
+            row |= {"kind": "scale", "steps": list(range(question.low, question.high + 1))}
+            row |= {"low": question.low_text, "high": question.high_text}
+        case Number():
+            row |= {"kind": "number", "unit": question.unit, "min": question.min, "max": question.max}
+            row["step"] = 1 if question.integer else None
+        case FreeText():
+            row |= {"kind": "text", "most": question.max_length}
+    return row

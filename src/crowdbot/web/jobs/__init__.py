@@ -1,7 +1,6 @@
 """Jobs: long work in worker processes, with progress, a log, cancel, limits and a list that survives the server."""
 
-from .command_job import command_work
-from .job import Job, JobWork
+from .job import Job, JobWork, command_work
 from .job_board import JobBoard
 from .job_record import JobRecord
 

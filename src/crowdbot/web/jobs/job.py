@@ -5,14 +5,16 @@ from __future__ import annotations
 import contextlib
 import math
 import multiprocessing
+import shlex
 import signal
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from .job_process import CPU, END, LINE, SHARE, run_work
+from .job_process import CPU, END, LINE, SHARE, run_command, run_work
 from .job_record import CANCELLED, DONE, FAILED, RUNNING, JobRecord
 
 DIED = "the worker process has died (out of memory?)"
@@ -37,6 +39,16 @@ class JobWork:
     command: str = ""
     results: str = ""
     words: tuple[str, ...] = ()
+
+
+def command_work(kind: str, title: str, words: tuple[str, ...], folder: Path, results: str) -> JobWork:
+    """Return a job that runs ``crowdbot WORDS`` in a folder, so that its results are those of the command line.
+
+    >>> command_work("Evaluation", "frontal", ("evaluate", "frontal"), Path("."), "").command
+    'crowdbot evaluate frontal'
+    """
+    command = shlex.join(("crowdbot", *words))
+    return JobWork(kind, title, run_command, (words, str(folder)), command, results, words)
 
 
 class Job:

@@ -13,8 +13,7 @@ from crowdbot.prediction import LAST
 from crowdbot.web.command import command
 from crowdbot.web.desk import Desk, Resource
 
-from .command_job import command_work
-from .job import JobWork
+from .job import JobWork, command_work
 from .job_forms import FORMS, read_values, results_name
 
 MOST_FILES = 200

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import io
+import json
 import math
 import multiprocessing
 import multiprocessing.connection
 import os
+import runpy
 import signal
 import sys
 import threading
@@ -15,13 +18,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import CrowdbotError, peak_memory
+from crowdbot.core import CrowdbotError, InputError, peak_memory
 
 SHARE, LINE, CPU, END = "job.share", "job.line", "job.cpu", "job.end"
 """Kinds of messages that every job sends: completed share, line of the log, processor time [s], end with a problem."""
 BEAT, LOOK = 1.0, 0.2
 """Time between two reports of the processor time, and between two looks at the memory [s]."""
 PROC = Path("/proc")
+LONGEST = 2000
+"""Largest number of characters of a line of the log."""
 
 
 class JobPipe:
@@ -73,6 +78,73 @@ def run_work(
         problem = f"{type(error).__name__}: {error}; this is a bug in crowdbot or in your code"
     own.send((CPU, time.process_time()))
     own.send((END, problem))
+
+
+def run_command(pipe: JobPipe, words: tuple[str, ...], folder: str) -> None:  # pragma: no cover - in another process
+    """Run a command in this process, with its lines and its progress sent through a pipe.
+
+    Raises:
+        InputError: the command has failed, with its last sentence.
+    """
+    os.chdir(folder)
+    os.environ["CROWDBOT_PROGRESS"] = "json"
+    out = CommandOutput(pipe)
+    sys.argv = ["crowdbot", *words]
+    status: object = 0
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
+        try:
+            runpy.run_module("crowdbot", run_name="__main__")
+        except SystemExit as end:
+            status = end.code
+        out.flush_line()
+    if status not in (0, None):
+        raise InputError(out.problem or f"the command has ended with status {status}")
+
+
+class CommandOutput(io.TextIOBase):
+    """Standard output and standard error of a command: lines of the log, and progress as JSON.
+
+    Args:
+        pipe: where the messages go.
+
+    Attributes:
+        problem: newest sentence of the command about an error.
+    """
+
+    def __init__(self, pipe: JobPipe) -> None:
+        super().__init__()
+        self._pipe, self._rest, self.problem = pipe, "", ""
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        """Name of the encoding."""
+        return "utf-8"
+
+    def writable(self) -> bool:
+        """Return True."""
+        return True
+
+    def write(self, text: str) -> int:
+        """Send the complete lines of a text."""
+        *lines, self._rest = (self._rest + text).split("\n")
+        for line in lines:
+            self._send(line.rstrip())
+        return len(text)
+
+    def flush_line(self) -> None:
+        """Send a last line without an end."""
+        if self._rest:
+            self.write("\n")
+
+    def _send(self, line: str) -> None:
+        if line.startswith('{"task"'):
+            with contextlib.suppress(ValueError, KeyError, TypeError):
+                self._pipe.share(json.loads(line)["share"])
+                return
+        if line.startswith(("crowdbot: ", "crowdbot error: ")) and "warning: " not in line:
+            self.problem = line.partition(": ")[2]
+        if line:
+            self._pipe.send((LINE, line[:LONGEST]))
 
 
 def _limit_cpu(seconds: float) -> None:
