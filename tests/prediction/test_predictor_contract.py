@@ -50,7 +50,7 @@ def test_built_in_names_are_those_of_the_field() -> None:
 def test_shapes_weights_and_validity(name: str, crowd: Maker) -> None:
     past = crowd(holes=0.2)
     forecast = predicted(name, past)
-    samples = 3 if name.startswith(("sampled", "anchor")) else 1
+    samples = 3 if KINDS[name].draws and name != "simulated" else 1  # people of a simulation have one goal by default
     assert forecast.position.shape == (4, samples, 12, 7, 2)
     assert np.array_equal(forecast.valid, past.present[:, -1])
     assert np.allclose(forecast.weight.sum(axis=1), 1.0)

@@ -140,7 +140,7 @@ class SampledConstantVelocity(Predictor):
     displacements: int = 1
 
     paper: ClassVar[Paper] = SCHOLLER
-    batched = True
+    batched = draws = True
 
     def __post_init__(self) -> None:
         for name in ("heading_sd", "speed_sd"):

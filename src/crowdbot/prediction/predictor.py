@@ -44,6 +44,10 @@ class Predictor(ABC):
     batched: ClassVar[bool] = False
     """Whether windows of several robots and environments may be predicted in one call, with the random stream of each
     from :func:`window_streams`. A subclass does not inherit it."""
+    draws: ClassVar[bool] = False
+    """Whether several samples can differ; a deterministic predictor returns K = 1 for any number of samples."""
+    learned: ClassVar[bool] = False
+    """Whether the predictor has weights or shapes that were learned from recordings of people."""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)

@@ -71,7 +71,7 @@ class Simulated(Predictor):
     [[9.5, 0.0]]
     """
 
-    batched = True
+    batched = draws = True
 
     model: CrowdModel | str = field(default_factory=ORCA)
     goal: Goal | str = field(default_factory=CurrentDirection)

@@ -152,7 +152,7 @@ class AnchorNet(Predictor):
 
     paper: ClassVar[Paper] = CHAI
     history: ClassVar[float] = HISTORY
-    batched = True
+    batched = draws = learned = True
 
     def __post_init__(self) -> None:
         check_fold(self.fold)

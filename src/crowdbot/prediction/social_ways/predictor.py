@@ -170,7 +170,7 @@ class SocialWays(LearnedPredictor):
         "CVPR Workshops",
         "10.48550/arXiv.1904.09507",
     )
-    batched = True
+    batched = draws = learned = True
 
     def __post_init__(self) -> None:
         super().__post_init__()

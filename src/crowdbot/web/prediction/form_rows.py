@@ -99,13 +99,19 @@ def written_values(cls: type, values: Mapping[str, Any], what: str) -> dict[str,
 
 
 def scheme_tables() -> dict[str, Any]:
-    """Return all lists of the dialogs, as `crowdbot list` shows them, with a form for each entry."""
+    """Return all lists of the dialogs, as `crowdbot list` shows them, with a form for each entry.
+
+    >>> [row["name"] for row in scheme_tables()["predictors"] if row["samples"]]
+    ['anchor-net', 'anchors', 'sampled-constant-velocity', 'social-ways']
+    >>> [row["name"] for row in scheme_tables()["predictors"] if row["learned"]]
+    ['anchor-net', 'anchors', 'social-ways']
+    """
     lists = {kind: _listing(kind) for kind in ("models", "goals", "costs", "searches", "predictors", "degradations")}
-    sampled = {name for name, kind in builtin_kinds("predictors").items() if _draws(kind)}
+    predictors = builtin_kinds("predictors")
     for row in lists["predictors"]:
-        row["samples"] = row["name"] in sampled
+        kind = predictors[row["name"]]
+        row["samples"], row["learned"] = kind.draws, kind.learned  # type: ignore[attr-defined]
         row["weights"] = row["name"] in prediction.WEIGHTS_FIELDS
-        row["learned"] = row["name"] in ("anchor-net", "anchors", "social-ways")
     lists["predictors"] = [row for row in lists["predictors"] if row["name"] != "simulated"]
     for row in lists["models"]:
         row["free"] = [*calibration.ParameterSpace(builtin_kinds("models")[row["name"]]()).names]
@@ -114,10 +120,6 @@ def scheme_tables() -> dict[str, Any]:
         row["level"], row["levels"] = kind.level, list(kind.levels)  # type: ignore[attr-defined]
     protocols = [{"name": name, "about": str(about)} for name, about in PROTOCOLS.items()]
     return {**lists, "protocols": protocols, "crowd": form_rows(prediction.Simulated)}
-
-
-def _draws(kind: type) -> bool:
-    return kind.__name__ in ("AnchorNet", "Anchors", "SampledConstantVelocity", "SocialWays", "Simulated")
 
 
 def _listing(kind: str) -> list[dict[str, Any]]:
