@@ -15,7 +15,7 @@ import textwrap
 import traceback
 from collections.abc import Iterator, Sequence
 
-from .parser import CommandParser
+from .parser import CommandParser, unknown_words
 
 __all__ = ["main"]
 
@@ -195,25 +195,9 @@ def _parse(words: Sequence[str]) -> argparse.Namespace:
     """Return the options; ends the program with a suggestion if an option is unknown."""
     parser = _parser(words)
     options, unknown = parser.parse_known_args(words)
-    if not unknown:
-        return options
-    from crowdbot.core import did_you_mean
-
-    chosen = {options.command, getattr(options, "verb", None)}
-    while deeper := [
-        choice
-        for action in parser._actions
-        if isinstance(action, argparse._SubParsersAction)
-        for name, choice in action.choices.items()
-        if name in chosen
-    ]:
-        parser = deeper[0]
-    known = [name for action in parser._actions for name in action.option_strings]
-    first = next((word for word in unknown if word.startswith("-")), "").partition("=")[0]
-    meant = did_you_mean(first, known) if first else ""
-    parser.exit(
-        2, f"{parser.prog}: error: unrecognized arguments: {shlex.join(unknown)}{meant}; see {parser.prog} --help\n"
-    )
+    if unknown:  # before the name of the command, whose own parser refuses those after it
+        parser.exit(2, unknown_words(parser.prog, unknown, ("--help", "--version", "--debug")))
+    return options
 
 
 def _list_commands(parser: argparse.ArgumentParser) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shlex
 import sys
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -95,6 +96,8 @@ class CommandParser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse words; an option of settings takes the following words with an equals sign, and no argument after them.
 
+        Unknown words end the program with a suggestion.
+
         Raises:
             InputError: a file or folder of results cannot be written.
 
@@ -118,6 +121,10 @@ class CommandParser(argparse.ArgumentParser):
         for action in self._actions:
             if action.dest in OUTPUTS and isinstance(path := getattr(parsed, action.dest, None), Path):
                 _check_writable(path, folder=action.metavar == "DIR")
+        if unknown:
+            self.exit(
+                2, unknown_words(self.prog, unknown, (name for one in self._actions for name in one.option_strings))
+            )
         return parsed, unknown
 
     def error(self, message: str) -> NoReturn:
@@ -159,6 +166,15 @@ class CommandParser(argparse.ArgumentParser):
             formatter.end_section()
         formatter.add_text(self.epilog)
         return f"{self.format_usage()}\n{formatter.format_help()}"
+
+
+def unknown_words(prog: str, unknown: Sequence[str], known: Iterable[str]) -> str:
+    """Return the error about words that are no option or argument, with the known option that may be meant."""
+    from crowdbot.core import did_you_mean
+
+    first = next((word for word in unknown if word.startswith("-")), "").partition("=")[0]
+    meant = did_you_mean(first, known) if first else ""
+    return f"{prog}: error: unrecognized arguments: {shlex.join(unknown)}{meant}; see {prog} --help\n"
 
 
 def _check_writable(path: Path, folder: bool) -> None:

@@ -92,14 +92,14 @@ class _Filter(Predictor):
         if sum(len(track.present.T) for track in tracks) == 0:
             raise InputError("kalman: a fit requires at least one person who is observed at two rows")
         best = dict(cls.first_guess)
-        cost = _negative_log_likelihood(cls(**best), tracks)
+        cost = cls(**best)._negative_log_likelihood(tracks)
         factor = 4.0
         while factor > 1.001:
             improved = False
             for name in cls.lowest:
                 for ratio in (factor, 1.0 / factor):
                     trial = best | {name: max(best[name] * ratio, cls.lowest[name])}
-                    value = _negative_log_likelihood(cls(**trial), tracks)
+                    value = cls(**trial)._negative_log_likelihood(tracks)
                     if value < cost:
                         best, cost, improved = trial, value, True
             factor = factor if improved else math.sqrt(factor)
@@ -107,7 +107,12 @@ class _Filter(Predictor):
 
     def negative_log_likelihood(self, *pasts: Windows) -> float:
         """Return the mean negative log-likelihood of a row (two coordinates) given the rows before it [nat]."""
-        return _negative_log_likelihood(self, [_tracks(past) for past in pasts])
+        return self._negative_log_likelihood([_tracks(past) for past in pasts])
+
+    def _negative_log_likelihood(self, tracks: list[_Tracks]) -> float:
+        total = sum(self._run_filter(*track)[1] for track in tracks)
+        rows = sum(int(np.sum(track.present)) - track.present.shape[1] for track in tracks)
+        return float(total / rows + math.log(2.0 * math.pi))
 
     def _run_filter(
         self, position: Floats, present: NDArray[np.bool_], dt: float, covariance: Floats | None = None
@@ -241,12 +246,6 @@ def _tracks(past: Windows) -> _Tracks:
         past.present[chosen[0], :, chosen[1]].T,
         past.dt,
     )
-
-
-def _negative_log_likelihood(filter_: _Filter, tracks: list[_Tracks]) -> float:
-    total = sum(filter_._run_filter(*track)[1] for track in tracks)
-    rows = sum(int(np.sum(track.present)) - track.present.shape[1] for track in tracks)
-    return float(total / rows + math.log(2.0 * math.pi))
 
 
 def _step(n: int, dt: float) -> Floats:

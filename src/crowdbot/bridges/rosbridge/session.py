@@ -11,7 +11,7 @@ from crowdbot.bridges.socket_server import Backlog, MessageQueue
 from crowdbot.core import InputError
 
 from .frames import COMPRESSIONS, FrameReader, OutgoingMessage, dump_json, field, fragments, png_frame
-from .graph import CallRelay, RosGraph, ros2_type
+from .graph import CallRelay, Frame, RosGraph, ros2_type
 
 LONGEST_QUEUE = 1000
 SMALLEST_FRAGMENT = 16
@@ -111,7 +111,6 @@ class Subscription:
 
 LEVELS = ("info", "warning", "error", "none")
 MOST_REPLIES, MOST_SUBSCRIPTIONS = 500, 500
-Frame = Mapping[str, Any]
 
 
 class ClientSession:
