@@ -30,6 +30,7 @@ import aiohttp
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from crowdbot.recording import record
+from crowdbot.simulation import RunSummary
 from crowdbot.trials import load_trial
 from crowdbot.web import StateFrame
 from crowdbot.web.simulator.kernel_preparation import PROGRAMS
@@ -242,31 +243,46 @@ def edited_wall(browser: Browser, folder: Path) -> list[Time]:
     return [Time("ways after the edit of a wall", statistics.median(times), "s", 0.2, how)]
 
 
-def seek(browser: Browser, folder: Path) -> list[Time]:
-    """Open a 10-minute episode of people who get a new id at each portal, and jump in it."""
+def record_episodes(folder: Path, text: str) -> tuple[RunSummary, list[float]]:
+    """Record a trial for one second to ``short.mcap`` and whole to ``long.mcap``; return it and 50 instants [s]."""
     folder.mkdir(parents=True)
-    (folder / "corridor.xml").write_text(corridor(40, "0.05"), encoding="utf-8")
-    record(load_trial(folder / "corridor.xml", duration="1"), 1, folder / "short.mcap")
-    done = record(load_trial(folder / "corridor.xml"), 1, folder / "long.mcap")
+    (folder / "trial.xml").write_text(text, encoding="utf-8")
+    record(load_trial(folder / "trial.xml", duration="1"), 1, folder / "short.mcap")
+    done = record(load_trial(folder / "trial.xml"), 1, folder / "long.mcap")
     chance = random.Random(1)  # noqa: S311 - instants of a measurement
-    # the short episode first, so that no kernel is compiled for the long one
+    return done, [round(chance.uniform(0.0, done.end) / 0.1) * 0.1 for _ in range(50)]
+
+
+@contextlib.contextmanager
+def short_episode(browser: Browser, folder: Path) -> Iterator[tuple[Page, int]]:
+    """Show the short episode first, so that no kernel is compiled for the long one; yields page and process."""
     with (
         program(folder, "--open", str(folder / "short.mcap")) as (address, process, _),
         window(browser, address) as page,
     ):
         page.get_by_label("View", exact=True).select_option("2d")
         page.wait_for_function("() => crowdbot.tab('simulator').picture.newest !== null")
+        yield page, process
+
+
+def machine_load() -> str:
+    """Return the load of the machine, for a remark."""
+    return f"at a load average of {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores"
+
+
+def seek(browser: Browser, folder: Path) -> list[Time]:
+    """Open a 10-minute episode of people who get a new id at each portal, and jump in it."""
+    done, wishes = record_episodes(folder, corridor(40, "0.05"))
+    with short_episode(browser, folder) as (page, process):
         before = peak_memory(process)
         opened = page.evaluate(OPENED, "long.mcap")
-        wishes = [round(chance.uniform(0.0, done.end) / 0.1) * 0.1 for _ in range(50)]
         times = page.evaluate(SOUGHT, wishes)
         peak = peak_memory(process)
     what = "10-minute episode with portals"
-    load = f"at a load average of {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores"
     how = f"longest of {len(times)} random instants of {done.end:g} s, median {statistics.median(times):.3f} s"
     people = f"40 people, each with a new id at each portal, {done.agents} ids"
     return [
-        Time(f"opening of a {what}", opened, "s", 5.0, f"to its first picture, {load}; {people}"),
+        Time(f"opening of a {what}", opened, "s", 5.0, f"to its first picture, {machine_load()}; {people}"),
         Time("the same, largest memory of the server", peak, "MB", 500.0, f"with the jumps; {before:.0f} MB before"),
         Time(f"seek in a {what}", max(times), "s", 0.3, how),
     ]
@@ -274,33 +290,21 @@ def seek(browser: Browser, folder: Path) -> list[Time]:
 
 def camera_episode(browser: Browser, folder: Path) -> list[Time]:
     """Open a 10-minute episode with two cameras, and jump in it while both images are shown."""
-    folder.mkdir(parents=True)
-    (folder / "hall.xml").write_text(HALL, encoding="utf-8")
-    record(load_trial(folder / "hall.xml", duration="1"), 1, folder / "short.mcap")
-    done = record(load_trial(folder / "hall.xml"), 1, folder / "long.mcap")
+    done, wishes = record_episodes(folder, HALL)
     size = (folder / "long.mcap").stat().st_size / 1e6
-    chance = random.Random(1)  # noqa: S311 - instants of a measurement
-    # the short episode first, so that no kernel is compiled for the long one
-    with (
-        program(folder, "--open", str(folder / "short.mcap")) as (address, process, _),
-        window(browser, address) as page,
-    ):
-        page.get_by_label("View", exact=True).select_option("2d")
-        page.wait_for_function("() => crowdbot.tab('simulator').picture.newest !== null")
+    with short_episode(browser, folder) as (page, process):
         before, used = peak_memory(process), processor_time(process)
         opened = page.evaluate(OPENED, "long.mcap")
         used = processor_time(process) - used
         page.evaluate("(names) => crowdbot.connection.call('simulator.cameras', { names })", list(IMAGES))
         page.wait_for_function("() => document.querySelectorAll('.camera-image').length === 2")
-        wishes = [round(chance.uniform(0.0, done.end) / 0.1) * 0.1 for _ in range(50)]
         times = page.evaluate(IMAGES_SOUGHT, [wishes, list(IMAGES)])
         peak = peak_memory(process)
     what = "10-minute episode with two cameras"
-    load = f"at a load average of {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores"
     how = f"{size:.0f} MB, 2 x 1200 images of 160 x 120 pixels, {done.end:g} s, 10 people"
     sought = f"longest of {len(times)} random instants, median {statistics.median(times):.3f} s"
     return [
-        Time(f"opening of a {what}", opened, "s", 5.0, f"to its first picture, {load}; {how}"),
+        Time(f"opening of a {what}", opened, "s", 5.0, f"to its first picture, {machine_load()}; {how}"),
         Time("the same, processor time of the server", used, "s", None, "until then"),
         Time("the same, largest memory of the server", peak, "MB", 500.0, f"with the jumps; {before:.0f} MB before"),
         Time(f"seek in a {what}", max(times), "s", 0.3, f"to the picture and both images; {sought}"),

@@ -11,33 +11,27 @@ continues there, also after Ctrl-C. The pair of ``[together]`` then crosses a ha
 from __future__ import annotations
 
 import argparse
-import contextlib
-import io
 import json
 import re
 import sys
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.cli import main as crowdbot
+from checkouts import BRIEF, call, check_fields, missing_file, read_toml, write_page
 from crowdbot.cli.output import progress
 from crowdbot.core import CrowdbotError, InputError, explain_write_errors
 from crowdbot.simulation import simulate
 from crowdbot.trials import load_trial
 
 LIST = Path(__file__).with_suffix(".toml")
-BRIEF = ("name", "repository", "commit", "file")
-FIELDS = {*BRIEF, "arguments", "packages", "base", "speed", "mass", "source"}
+FIELDS = {"name", *BRIEF, "arguments", "packages", "base", "speed", "mass", "source"}
 NEAR = 0.2
 """Largest relative difference from a data sheet that is no miss."""
 ARRIVED = 0.3
 """Distance from its goal [m] at which a robot has arrived."""
-CTRL_C = 130
-"""Exit code of a command that Ctrl-C ended."""
 HEAD = """# Robots of other makers
 
 {count} robot files of makers, as `crowdbot new robot FILE --yes` reads them, beside the makers' data sheets. Apart from
@@ -98,18 +92,11 @@ def read_robots(file: Path = LIST) -> tuple[list[MakerRobot], tuple[str, str]]:
     Raises:
         InputError: the file cannot be read, or a robot lacks a field or has an unknown one.
     """
-    try:
-        table = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"cannot read {file}: {error}") from None
+    table = read_toml(file)
     robots: list[MakerRobot] = []
     for row in table.get("robot", []):
-        missing, unknown = [key for key in BRIEF if key not in row], sorted(set(row) - FIELDS)
-        if missing or unknown:
-            what = (
-                f"lacks {missing[0]!r}" if missing else f"has {unknown[0]!r}, allowed are {', '.join(sorted(FIELDS))}"
-            )
-            raise InputError(f"{file}: the robot {str(row.get('name', len(robots) + 1))!r} {what}")
+        place = f"{file}: the robot {str(row.get('name', len(robots) + 1))!r}"
+        check_fields(row, ("name", *BRIEF), FIELDS, place)
         robots.append(MakerRobot(**row))
     pair = tuple(table.get("together", {}).get("robots", ()))
     names = [robot.name for robot in robots]
@@ -122,24 +109,16 @@ def import_robot(robot: MakerRobot, checkouts: Path, keep: Path) -> dict[str, An
     """Return what the command ``new robot`` says of a robot, or ``{"refused": REASON}``."""
     file = checkouts / robot.repository / robot.file
     if not file.is_file():
-        home = checkouts / robot.repository
-        return {
-            "refused": f"there is no {file}; git clone https://github.com/{robot.repository} {home} &&"
-            f" git -C {home} checkout {robot.commit}"
-        }
+        return {"refused": missing_file(file, checkouts, robot.repository, robot.commit)}
     words = ["new", "robot", str(file), "--out", str(keep / robot.folder), "--yes", "--json", "--force"]
     for key, value in robot.arguments.items():
         words += ["--arg", f"{key}:={value}"]
     for name, path in robot.packages.items():
         words += ["--package", f"{name}={checkouts / path}"]
-    told, wrong = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(wrong):
-        code = crowdbot(words)
-    if code == CTRL_C:
-        raise KeyboardInterrupt
+    code, told, wrong = call(words)
     if code:
-        return {"refused": wrong.getvalue().strip().replace(f"{checkouts}/", "").removeprefix("crowdbot: ")}
-    return dict(json.loads(told.getvalue()))
+        return {"refused": wrong.strip().replace(f"{checkouts}/", "").removeprefix("crowdbot: ")}
+    return dict(json.loads(told))
 
 
 def drive_together(first: str, second: str, keep: Path) -> dict[str, Any]:
@@ -307,11 +286,7 @@ def main(words: Sequence[str] | None = None) -> int:
         text = page(
             robots, results, together, "python studies/makers_robots.py CHECKOUTS --keep OUT --page makers-robots.md"
         )
-        if options.page is None:
-            print(text, end="")
-        else:
-            with explain_write_errors(options.page):
-                options.page.write_text(text, encoding="utf-8")
+        write_page(text, options.page)
     except CrowdbotError as error:
         parser.error(str(error))
     return 0

@@ -12,28 +12,22 @@ way round, is a miss.
 from __future__ import annotations
 
 import argparse
-import contextlib
-import io
 import re
 import shlex
 import sys
 import tempfile
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from crowdbot.cli import main as crowdbot
+from checkouts import BRIEF, call, check_fields, missing_file, read_toml, write_page
 from crowdbot.cli.output import progress
 from crowdbot.core import CrowdbotError, InputError, explain_write_errors
 from crowdbot.trials import load_trial
 
 LIST = Path(__file__).with_suffix(".toml")
-BRIEF = ("kind", "repository", "commit", "file")
-FIELDS = {*BRIEF, "command", "refused", "people"}
+FIELDS = {"kind", *BRIEF, "command", "refused", "people"}
 COMMANDS = ("predict", "import", "map")
-CTRL_C = 130
-"""Exit code of a command that Ctrl-C ended."""
 ROWS = re.compile(r": (\d+) rows of (\d+) (?:person|people), ([^ ]+) s with a step of ([^ ]+) s")
 SPEED = re.compile(r": ([^ ]+ x [^ ]+ \w+); speed ([^ ]+ [\w/]+)")
 MOST_WARNINGS = 2
@@ -90,18 +84,9 @@ def read_list(file: Path = LIST) -> list[UserFile]:
     Raises:
         InputError: the file cannot be read, or a row lacks a field or has a wrong one.
     """
-    try:
-        table = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"cannot read {file}: {error}") from None
     rows: list[UserFile] = []
-    for number, row in enumerate(table.get("file", []), 1):
-        missing, unknown = [key for key in BRIEF if key not in row], sorted(set(row) - FIELDS)
-        if missing or unknown:
-            what = (
-                f"lacks {missing[0]!r}" if missing else f"has {unknown[0]!r}, allowed are {', '.join(sorted(FIELDS))}"
-            )
-            raise InputError(f"{file}: file {number} {what}")
+    for number, row in enumerate(read_toml(file).get("file", []), 1):
+        check_fields(row, ("kind", *BRIEF), FIELDS, f"{file}: file {number}")
         item = UserFile(**row)
         if item.command.split()[:1] not in ([word] for word in COMMANDS):
             raise InputError(f"{file}: file {number} has the command {item.command!r}, it begins with {COMMANDS}")
@@ -113,12 +98,7 @@ def run(item: UserFile, checkouts: Path) -> Outcome:
     """Return what the command of a row says."""
     file = checkouts / item.repository / item.file
     if not file.exists():
-        home = checkouts / item.repository
-        return Outcome(
-            False,
-            f"there is no {file}; git clone https://github.com/{item.repository} {home} &&"
-            f" git -C {home} checkout {item.commit}",
-        )
+        return Outcome(False, missing_file(file, checkouts, item.repository, item.commit))
     name, *options = shlex.split(item.command)
     with tempfile.TemporaryDirectory() as folder:
         trial = Path(folder, "trial.xml")
@@ -132,7 +112,8 @@ def run(item: UserFile, checkouts: Path) -> Outcome:
         else:
             words = ["predict", "--data", str(file)]
         try:
-            code, told = _command([*words, *options])
+            code, out, wrong = call([*words, *options])
+            told = [*wrong.splitlines(), *out.splitlines()]
             if code:
                 refusal = next((line for line in told if line.startswith("crowdbot: ")), told[0] if told else "")
                 return Outcome(False, _plain(refusal, file, trial))
@@ -147,19 +128,6 @@ def _plain(refusal: str, file: Path, trial: Path) -> str:
     for folder in (f"{file.parent.resolve()}/", f"{file.parent}/", f"{trial.parent}/"):
         refusal = refusal.replace(folder, "")
     return refusal.removeprefix("crowdbot: ")
-
-
-def _command(words: list[str]) -> tuple[int, list[str]]:
-    """Return the exit code and the lines of a command."""
-    told, wrong = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(wrong):
-        try:
-            code = crowdbot(words)
-        except SystemExit as error:  # wrong options
-            code = 2 if error.code is None else int(error.code)
-    if code == CTRL_C:
-        raise KeyboardInterrupt
-    return code, [*wrong.getvalue().splitlines(), *told.getvalue().splitlines()]
 
 
 def _of_recording(told: Sequence[str]) -> Outcome:
@@ -268,11 +236,7 @@ def main(words: Sequence[str] | None = None) -> int:
         text = page(
             items, measure(items, options.checkouts), "python studies/users_files.py CHECKOUTS --page users-files.md"
         )
-        if options.page is None:
-            print(text, end="")
-        else:
-            with explain_write_errors(options.page):
-                options.page.write_text(text, encoding="utf-8")
+        write_page(text, options.page)
     except CrowdbotError as error:
         parser.error(str(error))
     return 0

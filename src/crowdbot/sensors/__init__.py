@@ -1,5 +1,6 @@
 """Sensors of robots. Contract: :class:`Sensor`; input: :class:`SensorView`; output: a :class:`Reading`."""
 
+from .beams import unit_vectors
 from .bumper import Bumper, BumperReading
 from .contract import check_sensor
 from .depth_camera import DepthCamera, DepthImage
@@ -85,4 +86,5 @@ __all__ = [
     "spatial_pose",
     "take_state_rows",
     "triangles_one_by_one",
+    "unit_vectors",
 ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import time
@@ -16,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.benchmark.speed.timing import environment
+from crowdbot.benchmark.speed.timing import environment, load_average
 from crowdbot.benchmark.speed.workloads import crowd
 from crowdbot.core import InputError, MissingExtra, Scene, kebab_case
 
@@ -192,7 +191,7 @@ def measure_engines(
     Raises:
         InputError: the source of RVO2 is not there or cannot be compiled.
     """
-    before = _load()
+    before = load_average()
     makers: list[Callable[[], EnginePeer]] = [
         lambda: Rvo2Peer(rvo2), JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer,
     ]  # fmt: skip
@@ -213,7 +212,9 @@ def measure_engines(
     million = _million(sizes.million) if sizes.million else None
     versions = {package: version(package) for peer in peers for package in peer.packages}
     protocols = {peer.describe(): peer.protocol for peer in peers}
-    return EngineReport(environment(), (before, _load()), sizes, versions, protocols, missing, tuple(rows), million)
+    return EngineReport(
+        environment(), (before, load_average()), sizes, versions, protocols, missing, tuple(rows), million
+    )
 
 
 def _tasks(peer: EnginePeer, sizes: EngineSizes) -> Iterator[tuple[int, str, int]]:
@@ -273,7 +274,3 @@ def _million(people: int) -> MillionRow:
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     seconds, megabytes = map(float, done.stdout.split())
     return MillionRow("orca", people, seconds, megabytes)
-
-
-def _load() -> float | None:
-    return os.getloadavg()[0] if hasattr(os, "getloadavg") else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import os
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
@@ -11,7 +10,7 @@ from importlib.metadata import version
 from types import FrameType
 from typing import Any
 
-from crowdbot.benchmark.speed.timing import environment
+from crowdbot.benchmark.speed.timing import environment, load_average
 from crowdbot.core import CrowdbotError, InputError, MissingExtra
 from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial, builtin_trials, expand_sweeps, load_trial
@@ -368,7 +367,7 @@ def measure_environments(
     """
     chosen = sizes or BenchmarkSizes()
     report = progress or (lambda what, share: None)
-    before, measurer, many = _load(), _Measurer(chosen), chosen.environments
+    before, measurer, many = load_average(), _Measurer(chosen), chosen.environments
     tasks: dict[str, Callable[[str], EnvironmentRow]] = {
         "steps-10": lambda name: measurer.advance(name, 10, 0, many),
         "steps-10-scan": lambda name: measurer.advance(name, 10, BEAMS, many),
@@ -390,9 +389,12 @@ def measure_environments(
     trials = trial_rates(chosen, report)
     versions = {package: version(package) for peer in measurer.peers for package in peer.packages}
     return EnvironmentReport(
-        environment(), (before, _load()), chosen, versions, measurer.missing, tuple(rows), tuple(calls), tuple(trials)
+        environment(),
+        (before, load_average()),
+        chosen,
+        versions,
+        measurer.missing,
+        tuple(rows),
+        tuple(calls),
+        tuple(trials),
     )
-
-
-def _load() -> float | None:
-    return os.getloadavg()[0] if hasattr(os, "getloadavg") else None

@@ -19,8 +19,7 @@ from crowdbot.perception import (
     TrackedScene,
     Tracker,
 )
-from crowdbot.sensors import Gaussian, Lidar2D, Lidar3D, Scan, triangles_one_by_one
-from crowdbot.sensors.beams import unit_vectors
+from crowdbot.sensors import Gaussian, Lidar2D, Lidar3D, Scan, triangles_one_by_one, unit_vectors
 
 from .measurement import Measurement
 

@@ -117,6 +117,11 @@ def _seconds(work: Callable[[], object]) -> float:
     return time.perf_counter() - begin
 
 
+def load_average() -> float | None:
+    """Return the number of processes that wait for a core, the mean over a minute; None where the system has none."""
+    return os.getloadavg()[0] if hasattr(os, "getloadavg") else None
+
+
 def environment() -> str:
     """Return the machine and the versions in one line."""
     import numba
