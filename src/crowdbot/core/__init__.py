@@ -25,8 +25,7 @@ from .errors import (
     import_optional,
     nearest_name,
 )
-from .markup.loose_xml import strict_xml
-from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
+from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities, strict_xml
 from .model_parameter import (
     Bounds,
     Paper,
@@ -44,7 +43,6 @@ from .model_parameter import (
 )
 from .output_lock import lock_output, release_stale_lock
 from .plugins.class_source import UnreadableValue, reads_only, unread_fields, without_running_code
-from .plugins.own_attributes import reset_undeclared
 from .plugins.plugin import (
     attribute_names,
     attribute_problems,
@@ -54,6 +52,7 @@ from .plugins.plugin import (
     from_attributes,
     kebab_case,
     required_fields,
+    reset_undeclared,
 )
 from .plugins.plugin_module import plugin_address, plugin_sources, relative_name, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle

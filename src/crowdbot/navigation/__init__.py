@@ -9,8 +9,7 @@ from .external import ExternalNavigator
 from .follower import FollowerNavigator
 from .links.external_stack import Ros2Navigator, RosbridgeNavigator
 from .links.real_robot import RealRobotNavigator
-from .navigator import Navigator
-from .navigator_memory import copy_memory
+from .navigator import Navigator, copy_memory
 from .observation import DISC, DriveLimits, Observation, VisiblePeople
 from .observation_batch import AgentsInView, ObservationBatch
 from .orca import ORCANavigator

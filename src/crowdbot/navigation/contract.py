@@ -7,8 +7,7 @@ import numpy as np
 from crowdbot.core import InputError, Walls
 
 from .action import Action
-from .navigator import Navigator
-from .navigator_memory import copy_memory
+from .navigator import Navigator, copy_memory
 from .observation import DriveLimits, Observation, VisiblePeople
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import inspect
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -19,7 +20,6 @@ from .action import Action
 from .batch_rows import share_time
 from .decision_thread import call_within
 from .decisions import Decisions, checked_joints
-from .navigator_memory import copy_memory
 from .observation import Observation
 from .observation_batch import ObservationBatch
 
@@ -201,3 +201,54 @@ def _takes_memory(kind: type[Navigator]) -> bool:
     """Return whether ``act`` has a second argument for the memory."""
     own = list(inspect.signature(kind.act).parameters.values())[2:]
     return any(p.kind is not p.KEYWORD_ONLY and p.kind is not p.VAR_KEYWORD for p in own)
+
+
+DEEPEST = 20
+"""Largest depth at which the part that cannot be copied is searched."""
+
+
+def copy_memory(memory: Any, navigator: str = "") -> Any:
+    """Return a deep copy of the memory of a navigator.
+
+    Args:
+        memory: the memory.
+        navigator: name of the navigator, for error messages.
+
+    Raises:
+        InputError: a part of the memory cannot be copied, such as an open file, a lock or a generator.
+
+    >>> copy_memory({"seen": [1, 2]})
+    {'seen': [1, 2]}
+    >>> copy_memory({"rows": iter(row for row in "ab")}, "Reader")
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: navigator Reader: memory['rows'] is a generator, which cannot be copied (cannot \
+pickle 'generator' object); store plain values
+    """
+    try:
+        return copy.deepcopy(memory)
+    except Exception as error:
+        path, part, reason = _culprit(memory, "memory", error, 0)
+        name = f"navigator {navigator}: " if navigator else ""
+        raise InputError(
+            f"{name}{path} is a {type(part).__name__}, which cannot be copied ({reason}); store plain values"
+        ) from error
+
+
+def _culprit(value: Any, path: str, error: Exception, depth: int) -> tuple[str, Any, Exception]:
+    """Return path, value and error of the smallest part that cannot be copied."""
+    for part_path, part in _parts(value, path) if depth < DEEPEST else ():
+        try:
+            copy.deepcopy(part)
+        except Exception as reason:
+            return _culprit(part, part_path, reason, depth + 1)
+    return path, value, error
+
+
+def _parts(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Yield path and value of each part of a container or object."""
+    if isinstance(value, Mapping):
+        yield from ((f"{path}[{key!r}]", part) for key, part in value.items())
+    elif isinstance(value, list | tuple):
+        yield from ((f"{path}[{k}]", part) for k, part in enumerate(value))
+    else:
+        yield from ((f"{path}.{name}", part) for name, part in getattr(value, "__dict__", {}).items())

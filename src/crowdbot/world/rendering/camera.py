@@ -156,3 +156,17 @@ def _checked_size(what: str, width: int, height: int) -> None:
     for name, value, most in (("width", width, LARGEST[0]), ("height", height, LARGEST[1])):
         if not 1 <= value <= most:
             raise InputError(f"{what}: {name} = {value} pixels must be from 1 to {most}")
+
+
+NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
+
+
+def geom_code(name: str) -> int:
+    """Return the label of a shape by its name in the model of the engine: the agent of a robot, or what it is.
+
+    >>> geom_code("robot3/base"), geom_code("wall/0"), geom_code("floor")
+    (3, -2, -3)
+    """
+    if name.startswith("robot"):
+        return int(name.removeprefix("robot").split("/")[0])
+    return FLOOR if name.startswith("floor") else WALL if name.startswith("wall/") else PROP

@@ -18,9 +18,8 @@ from crowdbot.world.physics.people_motion import PeopleMotion
 from crowdbot.world.physics.stage import Light, PhysicsStage
 from crowdbot.world.stage_appearance import Appearance
 
-from .camera import CameraImages, CameraView
+from .camera import FLOOR, WALL, CameraImages, CameraView, geom_code
 from .carried_objects import carried_parts, holds
-from .labels import FLOOR, WALL, geom_code
 from .raster_kernels import place_shapes, vertex_normals
 from .rasterizer import DrawList, Illumination, Rasterizer, TexturePool, pack_textures
 from .shape_meshes import ShapeMesh, box_mesh, flat_mesh, geom_mesh

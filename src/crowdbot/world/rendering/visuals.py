@@ -17,9 +17,8 @@ from crowdbot.world.physics.mjcf_model import MjcfModel
 from crowdbot.world.physics.people_motion import PeopleMotion
 from crowdbot.world.physics.stage import PhysicsStage
 
-from .camera import LARGEST, CameraImages, CameraView
+from .camera import LARGEST, NOTHING, WALL, CameraImages, CameraView, geom_code
 from .gl_context import close_gl_context, create_gl_context, use_gl_context
-from .labels import NOTHING, WALL, geom_code
 
 SHAPES_MOST = 20_000
 HIDDEN = 5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,9 +11,8 @@ from typing import NamedTuple
 from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_xml, read_bytes
 
 from .evaluation import Budget
-from .files import FileSource, with_place
 from .scope import Scope, boolean
-from .texts import Texts
+from .texts import FileSource, Texts
 
 MOST_ELEMENTS = 50_000
 MOST_CALLS = 30
@@ -386,3 +386,9 @@ def parse_parameters(text: str) -> tuple[MacroParameter, ...]:
         if len(macro_parameters) > MOST_PARAMETERS:
             raise InputError(f"a macro has more than {MOST_PARAMETERS} parameters")
     return tuple(macro_parameters)
+
+
+def with_place(element: Element, place: str) -> Element:
+    """Return a copy of an element and its children with the name of their file."""
+    children = [with_place(child, place) for child in element.children]
+    return dataclasses.replace(element, attributes=dict(element.attributes), children=children, place=place)

@@ -4,18 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from crowdbot.core import InputError, did_you_mean, parse_yaml
 
 from .evaluation import TOKENIZE, Budget, evaluate
 from .expression import parse_expression, split_text
-from .files import FileSource
 from .scope import Scope
 
 MOST_TEXT = 100_000
 MOST_DEPTH = 20
 MOST_YAML_BYTES = 1_000_000
+
+
+class FileSource(Protocol):
+    """Finds the files of a robot; nothing outside its folders is found."""
+
+    def find(self, reference: str, beside: Path | None = None) -> Path | None:
+        """Return the file of ``package://NAME/PATH`` or of a path relative to ``beside``, or None if it is missing."""
+
+    def lack(self, reference: str) -> str:
+        """Return why a file that was not found is missing and what to do; empty if nothing more is known."""
 
 
 class Texts:
