@@ -5,24 +5,22 @@ import math
 
 import numpy as np
 import pytest
+from open_ground import ANY_WAY, WHEELS, drive, observe
 
-from crowdbot.core import InputError, Pose, Twist, Walls
+from crowdbot.core import InputError, Twist, Walls
 from crowdbot.data import Forecast
 from crowdbot.navigation import (
     DriveLimits,
     DynamicWindowNavigator,
     MPCNavigator,
-    Observation,
     PotentialFieldNavigator,
     RDSNavigator,
     SocialForceNavigator,
     TimeElasticBandNavigator,
     TrackHistory,
-    VisiblePeople,
     check_navigator,
 )
 from crowdbot.prediction import Predictor
-from crowdbot.world import DifferentialDrive, Omnidirectional, Twists
 
 KINDS = (
     SocialForceNavigator,
@@ -32,42 +30,7 @@ KINDS = (
     TimeElasticBandNavigator,
     RDSNavigator,
 )
-WHEELS = DriveLimits(1.0, 1.5, 1.0, 3.0)
-ANY_WAY = WHEELS._replace(holonomic=True)
 pytestmark = pytest.mark.parametrize("kind", KINDS)
-
-
-def observe(people=(), **changes):
-    """Return what a robot at the origin knows, looking along x; people are x, y, vx, vy."""
-    rows = np.array(people, dtype=float).reshape(-1, 4)
-    known = {"pose": (0.0, 0.0, 0.0), "goal": (9.0, 0.0), "radius": 0.3, "limits": WHEELS, "dt": 0.1}
-    known["people"] = VisiblePeople(rows[:, :2], rows[:, 2:], np.full(len(rows), 0.25))
-    return Observation(**(known | changes))
-
-
-def drive(navigator, limits, goal, seconds, people=(), walls=()):
-    """Return the path ``[T, 2]`` of a robot from the origin, and the smallest clearance to people."""
-    kind = Omnidirectional if limits.holonomic else DifferentialDrive
-    vehicle = kind(1.0, 1.5, 1.0, 3.0)
-    pose, twist, path, gap = Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1), [], math.inf
-    rows, stage = np.array(people, dtype=float).reshape(-1, 4), Walls.of(list(walls))
-    for k in range(round(seconds / 0.1)):
-        moved = rows.copy()
-        moved[:, :2] += 0.1 * k * rows[:, 2:]
-        x, y = pose.position[0].tolist()
-        known = observe(
-            moved,
-            pose=(x, y, float(pose.heading[0])),
-            twist=twist.at(0),
-            goal=goal,
-            limits=limits,
-            walls=stage,
-            time=0.1 * k,
-        )
-        gap = min(gap, known.nearest)
-        pose, twist = vehicle.step(pose, twist, navigator.act(known), 0.1)
-        path.append(pose.position[0].copy())
-    return np.array(path), gap
 
 
 def test_keeps_the_contract(kind):
