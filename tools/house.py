@@ -23,7 +23,8 @@ PROJECT = HERE.parent / "pyproject.toml"
 SMALL_MODULE = 120
 CIRCLES, DEEP = "modules in import circles", "imports past the face of a room"
 FAILING = (CIRCLES, DEEP)
-TUPLE_METHODS = {"_replace", "_asdict", "_make", "_fields", "_field_defaults"}  # public methods of named tuples
+PUBLIC = {"_replace", "_asdict", "_make", "_fields", "_field_defaults"}  # methods of named tuples
+PUBLIC |= {"_exit", "_current_frames"}  # functions of os and sys
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -242,7 +243,7 @@ def private_accesses(modules: dict[str, Module]) -> list[str]:
             if isinstance(node, ast.ImportFrom):
                 names = [alias.name for alias in node.names if _is_private(alias.name)]
                 breaches += [f"{module.path}:{node.lineno} import {name}" for name in names]
-            elif isinstance(node, ast.Attribute) and _is_private(node.attr) and node.attr not in TUPLE_METHODS:
+            elif isinstance(node, ast.Attribute) and _is_private(node.attr) and node.attr not in PUBLIC:
                 mine = ast.unparse(node.value) in ("self", "cls", "super()")
                 if not mine and node.attr not in own.get(id(node), ()):
                     breaches.append(f"{module.path}:{node.lineno} {ast.unparse(node)}")

@@ -141,7 +141,7 @@ def test_private_names_of_other_objects(house, tmp_path):
         "class One:\n    def __init__(self): self._x = 1\n"
         "    def equals(self, other): return self._x == other._x\n"
         "    def steal(self, other): return other._y\n"
-        "def read(one): return one._x, one._replace(), one.__class__\n"
+        "def read(one): return one._x, one._replace(), one.__class__, os._exit\n"
     )
     assert breaches(house, tmp_path, a=text, b="", c="from . import b") == {
         "uses of private names of other objects": ["a.py:1 import _hidden", "a.py:5 other._y", "a.py:6 one._x"]
