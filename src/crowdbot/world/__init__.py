@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from crowdbot.world.robots.drives.wheeled import OmniWheelDrive as OmniWheelDrive
     from crowdbot.world.robots.drives.wheeled import WheeledDrive as WheeledDrive
 
+    from .behaviors.behavior_tree import BehaviorTree as BehaviorTree
+    from .behaviors.behavior_xml import parse_behavior_tree as parse_behavior_tree
     from .buildings.building import Building as Building
     from .buildings.building import BuildingDoor as BuildingDoor
     from .buildings.building import BuildingPart as BuildingPart

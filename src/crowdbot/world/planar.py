@@ -133,7 +133,7 @@ class PlanarWorld(World):
         latency: delay of the commands of a robot [s], by agent (default 0), see :class:`CommandDelay`.
         ghosts: robots that drive, but are absent to people, sensors and other robots, and have no contacts.
         avatars: people and robots whose pose comes from outside; to the crowd model they are external.
-        reactions: reactions of people to robots, on top of the crowd model.
+        reactions: reactions of people to robots, and behaviour trees, on top of the crowd model.
         doors: doors, whose leaves are walls; E = 1.
         outlines: convex outline ``[K, 2]`` [m] of robots in their frame, by agent, see :attr:`Robot.outline`; for
             contacts with people, robots and walls. Others are discs. To the crowd model every robot is a disc.
@@ -401,7 +401,7 @@ class PlanarWorld(World):
         resolve, radius = self._finish_motion, before.radius
         step: Callable[[Scene, float], Scene] = self._step_model
         if self.reactions is not None:
-            start, step = self.reactions.apply(start, step, sorted(self.twists), radius, self._traffic, self.dt)
+            start, step = self.reactions.apply(start, step, sorted(self.twists), before, self._traffic, self.dt)
         earlier, crowd = move_people(start, step, resolve, self.limits, self.dt, self.substeps, radius)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
         own |= {"preferred_speed": before.preferred_speed, "robot": None}

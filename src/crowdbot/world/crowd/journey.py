@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -24,6 +25,11 @@ JOURNEY, STOP = "journey", "stop"
 which keeps counting on a repeated journey.
 """
 THENS = ("leave", "stay", "again")
+HOLD = "hold"
+"""Name in the memory of a scene ``[E, A]``: 0 for people who go to the next waypoint on arrival, ``HOLDS`` for those
+who stay at their waypoint, and ``GOES_ON`` for those who go to the next one at the end of the step, wherever they are.
+"""
+HOLDS, GOES_ON = 1.0, 2.0
 
 
 @dataclass(frozen=True)
@@ -115,7 +121,54 @@ class JourneyAssignment:
     def advance(
         self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
     ) -> Scene:
-        """Return the scene after people who reached a waypoint have switched to the next one or left."""
+        """Return the scene after people who reached a waypoint have switched to the next one or left.
+
+        The memory ``HOLD`` tells who does so regardless of their place, if it is there.
+        """
+        if HOLD in scene.memory:
+            held = scene.memory[HOLD] > 0.0
+            free = self._advance_free(scene.replace(external=scene.external | held), seeds, ids, holds)
+            scene = free.replace(external=scene.external)
+            scene = self._go_on(scene, scene.memory[HOLD] == GOES_ON, seeds, ids, holds)
+            moving = np.zeros(scene.shape, dtype=np.bool_)
+            for _, _, at, rows in self._parties(scene, held):
+                if at.moves:
+                    moving |= rows
+            return self.aim(scene, moving, seeds, ids, holds)
+        return self._advance_free(scene, seeds, ids, holds)
+
+    def _go_on(
+        self, scene: Scene, who: Bools, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None
+    ) -> Scene:
+        """Return the scene after the people ``who`` ``[E, A]`` have switched to the next waypoint or left."""
+        who = who & self.under_way(scene)
+        if not np.any(who):
+            return scene
+        stop = np.where(who, scene.memory[STOP] + 1.0, scene.memory[STOP])
+        moved = scene.replace(memory={**scene.memory, STOP: stop})
+        leaves = np.array([journey.then == "leave" for journey in self.journeys], dtype=np.bool_)
+        over = who & ~self.under_way(moved)
+        left = over & leaves[np.maximum(scene.memory[JOURNEY].astype(np.int64), 0)]
+        return self.aim(moved.replace(active=scene.active & ~left), who & ~over, seeds, ids, holds)
+
+    def under_way(self, scene: Scene) -> Bools:
+        """Return ``[E, A]`` who has a waypoint ahead."""
+        journey = scene.memory[JOURNEY].astype(np.int64)
+        ends = [math.inf if one.then == "again" else len(one.stops) for one in self.journeys]
+        last = np.array([*ends, 0.0])[journey]
+        return np.greater(scene.active, scene.external) & (scene.memory[STOP] < last)
+
+    def reached(self, scene: Scene, who: Bools) -> Bools:
+        """Return ``[E, A]`` which of the people ``who`` are at their current waypoint."""
+        there = np.zeros(scene.shape, dtype=np.bool_)
+        for _, _, at, rows in self._parties(scene, who):
+            there[rows] = at.is_reached(scene.position[rows], scene.goal[rows])
+        return there
+
+    def _advance_free(
+        self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None
+    ) -> Scene:
+        """Advance people who go to the next waypoint on arrival."""
         if not self._table.complete:
             return self._advance_each(scene, seeds, ids, holds)
         shape = scene.shape

@@ -1,4 +1,4 @@
-"""RobotReactions: the reactions of a crowd to robots, as a layer between routing and crowd model."""
+"""RobotReactions: reactions and behaviour trees of a crowd, as a layer between routing and crowd model."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, wrap_angle
-from crowdbot.typing import Floats
+from crowdbot.typing import Bools, Floats
+from crowdbot.world.behaviors.behavior_choices import REACT, STAND, BehaviorChoices
+from crowdbot.world.behaviors.behavior_tree import PERSON, STEP, BehaviorTree
 from crowdbot.world.crowd.agent_arrays import BOOL, FLOAT, dense
-from crowdbot.world.crowd.journey import JOURNEY
+from crowdbot.world.crowd.journey import GOES_ON, HOLD, HOLDS, JOURNEY
 from crowdbot.world.crowd.people_flow import PeopleFlow
 from crowdbot.world.crowd.person_random import uniform
 
@@ -28,6 +30,10 @@ REACTION, REACTION_STATE = "reaction", "reaction_state"
 drawn yet. ``[E, A, 4]``: code of the reaction in force (0: none), time left of it or of the pause [s], index of the
 robot, time for which the robot has been out of sight [s].
 """
+BEHAVIOR, BEHAVIOR_STATE = "behavior", "behavior_state"
+"""Names in the memory of a scene with behaviour trees. ``[E, A]``: 1 + the index of the tree of a person, 0 for none.
+``[E, A, S]``: state of the tree, see :meth:`BehaviorTree.begin`.
+"""
 AHEAD = 2.0
 """Time [s] that a goal lies ahead of a person who reacts."""
 STILL = 0.2
@@ -38,20 +44,39 @@ ASIDE = math.pi / 4.0
 """Largest angle [rad] between the walking direction and the body of a person who looks at a robot."""
 
 
-@dataclass(frozen=True)
-class RobotReactions:
-    """Which people react to robots, and how.
-
-    People whose reaction chooses their way do not keep the gap to robots that their model has beside that.
-
-    Each person draws one of the reactions of their group, or none, by a random number that depends only on the seed
-    and their id. Reactions change the goal and the preferred speed that the crowd model gets, so they work with every
-    model. People with the reactions ``ignore`` and ``impassive`` take their step from a second call of the model,
-    without robots or with robots that stand still.
+class _Choice(NamedTuple):
+    """What people with and without behaviour trees do in a step.
 
     Fields:
-        groups: groups of people: pairs of a reaction and its share in the group. The sum of the shares is at most 1;
-            the rest does not react.
+        memory: memory of the scene, in which reactions to other people are left out.
+        rule: ``[E, A]`` 1 + the index of the reaction of each person, -1 for none.
+        state: ``[E, A, 4]`` states of reactions, see :data:`REACTION_STATE`.
+        stands: ``[E, A]`` who stands by their tree.
+        face: ``[E, A, 2]`` vector to which they turn.
+    """
+
+    memory: dict[str, Any]
+    rule: Floats
+    state: Floats
+    stands: Bools
+    face: Floats
+
+
+@dataclass(frozen=True)
+class RobotReactions:
+    """Which people react to robots, and how, and who has a behaviour tree.
+
+    A behaviour tree is ticked once in each step, and chooses a reaction, the walk to the goal, or a stop. People whose
+    reaction chooses their way do not keep the gap to robots that their model has beside that.
+
+    Each person draws one of the reactions or trees of their group, or none, by a random number that depends only on
+    the seed and their id. Reactions change the goal and the preferred speed that the crowd model gets, so they work
+    with every model. People with the reactions ``ignore`` and ``impassive`` take their step from a second call of the
+    model, without robots or with robots that stand still.
+
+    Fields:
+        groups: groups of people: pairs of a reaction or a :class:`BehaviorTree` and its share in the group. The sum of
+            the shares is at most 1; the rest does not react.
         members: group of each initial agent ``[A]``, -1 for none.
         sources: group of the people of each source, -1 for none.
 
@@ -64,7 +89,7 @@ class RobotReactions:
     ('curious', 2)
     """
 
-    groups: Sequence[Sequence[tuple[RobotReaction, float]]]
+    groups: Sequence[Sequence[tuple[RobotReaction | BehaviorTree, float]]]
     members: Sequence[int] = ()
     sources: Sequence[int] = ()
 
@@ -82,8 +107,16 @@ class RobotReactions:
 
     @functools.cached_property
     def reactions(self) -> tuple[RobotReaction, ...]:
-        """The reactions of all groups, in order."""
-        return tuple(reaction for group in self.groups for reaction, _ in group)
+        """The reactions of all groups and those that their trees choose, in order."""
+        return tuple(
+            reaction for group in self.groups for item, _ in group
+            for reaction in (item.reactions if isinstance(item, BehaviorTree) else (item,))
+        )  # fmt: skip
+
+    @functools.cached_property
+    def trees(self) -> tuple[BehaviorTree, ...]:
+        """The behaviour trees of all groups, in order."""
+        return tuple(item for group in self.groups for item, _ in group if isinstance(item, BehaviorTree))
 
     @functools.cached_property
     def _table(self) -> tuple[NDArray[np.int64], Floats]:
@@ -108,10 +141,14 @@ class RobotReactions:
         who = np.zeros(scene.shape, dtype=np.bool_)
         who[:, :first] = True
         memory = {REACTION: np.zeros(scene.shape), REACTION_STATE: np.zeros((*scene.shape, 4))}
+        if self.trees:
+            width = max(tree.width for tree in self.trees)
+            memory |= {BEHAVIOR: np.zeros(scene.shape), BEHAVIOR_STATE: np.zeros((*scene.shape, width))}
+            memory |= {HOLD: np.zeros(scene.shape)}
         return self._assign(scene.replace(memory={**scene.memory, **memory}), group, who & ~scene.external, flow)
 
     def apply(
-        self, scene: Scene, step: Step, robots: Sequence[int], radius: Floats, flow: PeopleFlow, dt: float
+        self, scene: Scene, step: Step, robots: Sequence[int], before: Scene, flow: PeopleFlow, dt: float
     ) -> tuple[Scene, Step]:
         """Return the scene for the crowd model with the wishes of people who react, and the step of the model.
 
@@ -119,36 +156,89 @@ class RobotReactions:
             scene: the scene at the start of the step, with the next points of paths as goals.
             step: step of the crowd model.
             robots: indices of the robots.
-            radius: ``[E, A]`` radii of all bodies [m], without margins.
+            before: the same scene with the goals of people, and the radii of all bodies without margins.
             flow: seeds and identities of the people.
             dt: time step [s].
+
+        Raises:
+            InputError: a behaviour tree reads an entry of its blackboard that nothing has written.
         """
         scene = self._assign_new(scene, flow)
         shape, codes = scene.shape, self._table[0]
         memory, pairs = scene.memory, (*scene.shape, 2)
         rule, state = dense(memory[REACTION], shape, FLOAT), memory[REACTION_STATE].copy()
-        if not len(codes) or not len(robots):
+        if not len(codes) or not (len(robots) or self.trees):
             return scene, step
         ahead = np.stack([np.cos(scene.heading), np.sin(scene.heading)], axis=-1)
         position, active = dense(scene.position, pairs, FLOAT), dense(scene.active, shape, BOOL)
+        led = np.zeros(shape, dtype=np.bool_) if not self.trees else memory[BEHAVIOR] > 0.0
         some = update_states(
-            *self._table, rule, position, ahead, active, dense(scene.external, shape, BOOL),
-            dense(scene.visible, shape, BOOL), np.array(robots, dtype=np.int64),
+            *self._table, np.where(led, -1.0, rule) if self.trees else rule, position, ahead, active,
+            dense(scene.external, shape, BOOL), dense(scene.visible, shape, BOOL), np.array(robots, dtype=np.int64),
             np.ascontiguousarray(scene.walls.segments()), float(dt), state,
         )  # fmt: skip
-        scene = scene.replace(memory={**memory, REACTION_STATE: state})
+        chosen: _Choice | None = None
+        if self.trees:
+            chosen = self._tick(scene.replace(goal=before.goal), robots, state, flow, dt)
+            memory, rule, state = chosen.memory, chosen.rule, chosen.state
+            some = some or bool(np.any(led & scene.active))
+        else:
+            memory = {**memory, REACTION_STATE: state}
+        scene = scene.replace(memory=memory)
         views = self._views(step, robots, state[..., 0])
         if not some:
             return scene, views
         wish, steers, toward = np.array(scene.desired_velocity(dt)), np.zeros(shape, dtype=np.bool_), np.zeros(pairs)
         choose_motion(
             self._table[1], rule, state, position, dense(scene.velocity, pairs, FLOAT), ahead,
-            dense(radius, shape, FLOAT), dense(scene.preferred_speed, shape, FLOAT),
+            dense(before.radius, shape, FLOAT), dense(scene.preferred_speed, shape, FLOAT),
             dense(scene.max_speed, shape, FLOAT), active, wish, steers, toward,
         )  # fmt: skip
+        stands = np.zeros(shape, dtype=np.bool_) if chosen is None else chosen.stands
+        if chosen is not None:
+            wish[stands], toward[stands] = 0.0, chosen.face[stands]
         looks = (state[..., 0] == REACTIONS.index("look")) & steers
-        led = _led_by_reaction(views, steers & ~looks)
-        return _with_wishes(scene, wish, steers), _turn_after(led, toward, looks)
+        follows = _led_by_reaction(views, steers & ~looks)
+        return _with_wishes(scene, wish, steers | stands), _turn_after(follows, toward, looks)
+
+    def _tick(self, scene: Scene, robots: Sequence[int], state: Floats, flow: PeopleFlow, dt: float) -> _Choice:
+        """Tick the behaviour trees of all people; ``state`` holds the reactions of people without one."""
+        shape, memory = scene.shape, scene.memory
+        choices = BehaviorChoices(scene, robots, flow.journeys, dt)
+        present = scene.active & ~scene.external
+        kept = memory[BEHAVIOR_STATE].copy().reshape(shape[0] * shape[1], -1)
+        for number, tree in enumerate(self.trees):
+            who = (present & (memory[BEHAVIOR] == 1.0 + number)).ravel()
+            if not np.any(who):
+                continue
+            own = kept[:, : tree.width].copy()
+            tree.write(own, who, PERSON, flow.ids.ravel().astype(np.float64))
+            tree.write(own, who, STEP, dt)
+            choices.tick(tree, self._first_of_tree[number], own, who)
+            kept[who, : tree.width] = own[who]
+        led = (memory[BEHAVIOR] > 0.0) & present
+        motion, chosen = choices.motion.reshape(shape), choices.rule.reshape(shape)
+        codes = np.append(self._table[0], 0)[chosen]
+        rule = np.where(led, np.where(chosen >= 0, 1.0 + chosen, -1.0), memory[REACTION])
+        acts = np.zeros((*shape, 4))
+        acts[..., 0], acts[..., 2] = codes, np.where(motion == REACT, choices.target.reshape(shape), 0)
+        new = np.where(led[..., None], acts, state)
+        to_person = led & (motion == REACT) & ~np.isin(choices.target.reshape(shape), np.array(robots, dtype=np.int64))
+        shown = np.where(to_person[..., None], 0.0, new)
+        hold = np.where(led & choices.next_stop.reshape(shape), GOES_ON, np.minimum(memory[HOLD], HOLDS))
+        stays = {REACTION: rule, REACTION_STATE: shown, HOLD: hold}
+        stays[BEHAVIOR_STATE] = kept.reshape(memory[BEHAVIOR_STATE].shape)
+        return _Choice({**memory, **stays}, rule, new, led & (motion == STAND), choices.face.reshape((*shape, 2)))
+
+    @functools.cached_property
+    def _first_of_tree(self) -> list[int]:
+        """Index of the first reaction of each tree in the table of reactions."""
+        first, found = 0, []
+        for item, _ in (row for group in self.groups for row in group):
+            if isinstance(item, BehaviorTree):
+                found.append(first)
+            first += len(item.reactions) if isinstance(item, BehaviorTree) else 1
+        return found
 
     def _assign_new(self, scene: Scene, flow: PeopleFlow) -> Scene:
         """Return the scene with the reactions of people who have entered since the last step."""
@@ -165,15 +255,26 @@ class RobotReactions:
     def _assign(self, scene: Scene, group: NDArray[np.int64], who: NDArray[np.bool_], flow: PeopleFlow) -> Scene:
         """Return the scene in which the people ``who`` of groups ``[E, A]`` have drawn their reactions."""
         luck = uniform(flow.seeds[:, None], flow.ids, "reaction")
-        rule, first = np.where(who, -1.0, scene.memory[REACTION]), 0
+        rule, first, number_of_tree = np.where(who, -1.0, scene.memory[REACTION]), 0, 0
+        memory = dict(scene.memory)
+        if self.trees:
+            memory |= {name: np.where(who, 0.0, memory[name]) for name in (BEHAVIOR, HOLD)}
+            memory[BEHAVIOR_STATE] = np.where(who[..., None], 0.0, memory[BEHAVIOR_STATE])
         for number, rows in enumerate(self.groups):
             ends = np.cumsum([share for _, share in rows])
             drawn = np.searchsorted(ends, luck, side="right")
-            mine = who & (group == number) & (drawn < len(rows))
-            rule = np.where(mine, 1.0 + first + drawn, rule)
-            first += len(rows)
-        state = np.where(who[..., None], 0.0, scene.memory[REACTION_STATE])
-        return scene.replace(memory={**scene.memory, REACTION: rule, REACTION_STATE: state})
+            for k, (item, _) in enumerate(rows):
+                mine = who & (group == number) & (drawn == k)
+                if isinstance(item, BehaviorTree):
+                    number_of_tree += 1
+                    memory[BEHAVIOR][mine] = number_of_tree
+                    memory[BEHAVIOR_STATE][mine, : item.width] = item.begin(1)
+                    memory[HOLD][mine] = HOLDS if item.leads_journey else 0.0
+                    first += len(item.reactions)
+                else:
+                    rule, first = np.where(mine, 1.0 + first, rule), first + 1
+        state = np.where(who[..., None], 0.0, memory[REACTION_STATE])
+        return scene.replace(memory={**memory, REACTION: rule, REACTION_STATE: state})
 
     def _views(self, step: Step, robots: Sequence[int], code: Floats) -> Step:
         """Return a step in which some people see no robots, or robots that stand still."""

@@ -1,0 +1,1 @@
+"""Behaviour trees: which reaction, walk or stop a person chooses at each step."""
