@@ -208,6 +208,11 @@ def test_groups_stand_and_turn_to_each_other():
     assert abs(turn_to(position, heading, 1, 2)) < 0.05
     assert abs(turn_to(position, heading, 2, 1)) < 0.05
     assert position[-1, 3, 0] > 6.0  # alone in its group
+    walks = "<KeepRunningUntilFailure><RegularNav/></KeepRunningUntilFailure>"
+    once = f"<SequenceWithMemory><TalkInGroup seconds='2'/>{walks}</SequenceWithMemory>"
+    world = world_of([once] * 2, people[:2], stops=[[(12.0, y)] for _, y, _ in people[:2]], group=[4, 4])
+    position, *_ = walk(world, 4.0)
+    assert np.count_nonzero(np.all(position[:, 1] == position[0, 1], axis=-1)) == 20
 
 
 def test_the_members_of_a_group_ahead_wait_for_the_last_one():

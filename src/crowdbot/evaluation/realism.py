@@ -284,7 +284,10 @@ def _people_of_their_own(trial: Trial, groups: Sequence[Group]) -> Iterator[Crow
             f"{len(own)} of the people {'has' if len(own) == 1 else 'have'} own parameters ({names}). This {compared}",
         )
     kinds = dict.fromkeys(
-        reaction.type for group in groups if not isinstance(group, RecordedPeople) for reaction in group.reactions
+        kind
+        for group in groups
+        if not isinstance(group, RecordedPeople)
+        for kind in (*(reaction.type for reaction in group.reactions), *("behaviour tree" for _ in group.behaviors))
     )
     if kinds:
         yield CrowdRealism(

@@ -172,6 +172,8 @@ def check_overrides(simulation: Any, new: Trial, added: bool = False) -> None:
             raise InputError(f"the goal of source {first.name!r} cannot change in a branch")
         if first.reactions != second.reactions:
             raise InputError(f"the reactions of source {first.name!r} cannot change in a branch")
+        if first.behaviors != second.behaviors:
+            raise InputError(f"the behaviours of source {first.name!r} cannot change in a branch")
     if crowd_names(old.crowd) != crowd_names(new.crowd):
         raise InputError("the names of crowds cannot change in a branch")
     if new.duration < time:

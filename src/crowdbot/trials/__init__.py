@@ -119,6 +119,7 @@ if TYPE_CHECKING:
     from .robot import Planner as Planner
     from .robot import RobotGoal as RobotGoal
     from .robot import RobotSpec as RobotSpec
+    from .robots.behavior import BehaviorSpec as BehaviorSpec
     from .robots.passage import blind_remarks as blind_remarks
     from .robots.passage import narrow_passage as narrow_passage
     from .robots.passage import passage_remarks as passage_remarks

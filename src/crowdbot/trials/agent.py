@@ -14,6 +14,7 @@ from crowdbot.core.fields import NAME, Points, attribute, check, children, quote
 
 from .files.trial_files import read_beside, resolve_file
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
+from .robots.behavior import BehaviorSpec
 from .robots.reaction import ReactionSpec, check_shares
 
 if TYPE_CHECKING:
@@ -69,11 +70,12 @@ class Agent:
     activity: str = attribute("", about=ABOUT_ACTIVITY)
     parameters: tuple[AgentParameter, ...] = children("parameter", about="model parameters of this person", max=100)
     reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
+    behaviors: tuple[BehaviorSpec, ...] = children("behavior", about="behaviour trees (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
-        check_shares(self.reactions)
+        check_shares(self.reactions, self.behaviors)
 
     @property
     def count(self) -> int:

@@ -13,6 +13,7 @@ from crowdbot.core.fields import Points, attribute, check, children
 from .distribution import Distribution
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 from .journey import Journey
+from .robots.behavior import BehaviorSpec
 from .robots.reaction import ReactionSpec, check_shares
 
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
@@ -78,11 +79,12 @@ class Spawner:
     )
     groups: tuple[Group, ...] = children("group", about="group sizes (default: no groups)", max=50)
     reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
+    behaviors: tuple[BehaviorSpec, ...] = children("behavior", about="behaviour trees (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
-        check_shares(self.reactions)
+        check_shares(self.reactions, self.behaviors)
         if self.layout != "circle" and self.noise:
             raise InputError('Spawner: noise acts with layout="circle" only')
         if self.layout not in ("circle", "halves"):
@@ -122,11 +124,12 @@ class SourceSpec:
     body: str = attribute("", about=ABOUT_BODY)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
     reactions: tuple[ReactionSpec, ...] = children("reaction", about="reactions to robots (default: none)", max=50)
+    behaviors: tuple[BehaviorSpec, ...] = children("behavior", about="behaviour trees (default: none)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
-        check_shares(self.reactions)
+        check_shares(self.reactions, self.behaviors)
 
     def arrival_count(self, duration: float) -> float:
         """Return the number of arrivals within a duration [s]: the maximum if regular, the mean if random."""

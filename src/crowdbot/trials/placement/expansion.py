@@ -76,6 +76,7 @@ def _agent(people: Any, a: int, spawner: Any) -> Agent:
         crowd=spawner.crowd,
         group=int(people.group[a]),
         reactions=spawner.reactions,
+        behaviors=spawner.behaviors,
     )
 
 

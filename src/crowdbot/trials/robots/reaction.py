@@ -11,6 +11,8 @@ from crowdbot.core import InputError
 from crowdbot.core.fields import attribute, check
 from crowdbot.world import REACTIONS, RobotReaction, RobotReactions
 
+from .behavior import BehaviorSpec
+
 
 @dataclass(frozen=True, kw_only=True)
 class ReactionSpec:
@@ -72,29 +74,38 @@ class ReactionSpec:
         return RobotReaction(self.type, *numbers, self.field_of_view)
 
 
-def check_shares(reactions: Sequence[ReactionSpec]) -> None:
-    """Raise :class:`InputError` if the shares of the reactions of an element are more than 1 together."""
-    if (total := sum(reaction.share for reaction in reactions)) > 1.0 + 1e-9:
-        raise InputError(f"the shares of the reactions are {total:g} together, they must be at most 1")
+def check_shares(reactions: Sequence[ReactionSpec], behaviors: Sequence[BehaviorSpec] = ()) -> None:
+    """Raise :class:`InputError` if the shares of reactions and behaviours of an element are more than 1 together."""
+    total = sum(reaction.share for reaction in reactions) + sum(behavior.share for behavior in behaviors)
+    if total > 1.0 + 1e-9:
+        kinds = " and ".join(word for word, ones in (("reactions", reactions), ("behaviours", behaviors)) if ones)
+        raise InputError(f"the shares of the {kinds} are {total:g} together, they must be at most 1")
 
 
 def robot_reactions(
     owners: Sequence[Any], owner: Sequence[int], sources: Sequence[Any], agents: int
 ) -> RobotReactions | None:
-    """Return the reactions of the people of a world; None if nobody reacts.
+    """Return the reactions and behaviour trees of the people of a world; None if there are none.
 
     Args:
-        owners: elements that people come from; those without reactions do not react.
+        owners: elements that people come from; those without reactions and behaviours have none.
         owner: index of the element of each initial person.
         sources: sources of the trial.
         agents: number of agents of the world.
+
+    Raises:
+        InputError: a behaviour tree cannot be read.
     """
     elements = [*owners, *sources]
-    reactions = [tuple(getattr(element, "reactions", ())) for element in elements]
-    if not any(reactions):
+    rows = [
+        [(spec.reaction(), spec.share) for spec in getattr(element, "reactions", ())]
+        + [(spec.behavior(), spec.share) for spec in getattr(element, "behaviors", ())]
+        for element in elements
+    ]
+    groups = [row for row in rows if row]
+    if not groups:
         return None
-    groups = [[(spec.reaction(), spec.share) for spec in rows] for rows in reactions if rows]
     numbers = iter(range(len(groups)))
-    group = [next(numbers) if rows else -1 for rows in reactions]
+    group = [next(numbers) if row else -1 for row in rows]
     members = [group[k] for k in owner] + [-1] * (agents - len(owner))
     return RobotReactions(groups, members, group[len(owners) :])

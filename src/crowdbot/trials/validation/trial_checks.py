@@ -18,6 +18,7 @@ from crowdbot.trials.cameras.camera import Camera
 from crowdbot.trials.placement.population import gap_to_robot, gap_to_walls, place, smallest_reach, start_outline
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
+from crowdbot.trials.robots.behavior import BehaviorSpec
 from crowdbot.trials.robots.robot_pose import start_problem
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
@@ -144,6 +145,7 @@ def problems_of(trial: Trial, seed: int | None = None) -> list[tuple[Any, str]]:
             *_robots(trial.stage, trial.robots),
             *(_recording(trial, item) for item in trial.recorded),
             *(_avatar(avatar) for avatar in trial.avatars),
+            *(_behavior(item) for owner in checked.people for item in owner.behaviors),
             *(start_problem(robot) for robot in trial.robots),
         ),
     ]
@@ -182,6 +184,14 @@ def _avatar(avatar: Avatar) -> Problems:
         avatar.start_pose()
     except InputError as error:
         yield avatar, f"{avatar.source}={quote_value(getattr(avatar, avatar.source))} {error}"
+
+
+def _behavior(item: BehaviorSpec) -> Problems:
+    """Yield why a behaviour tree cannot be read."""
+    try:
+        item.behavior()
+    except InputError as error:
+        yield item, f"file={quote_value(item.file)} cannot be used: {error}"
 
 
 def _periods(checked: ValidationContext) -> Problems:

@@ -175,15 +175,18 @@ class BehaviorChoices:
         kept[who] = np.where(done, 0.0, kept + self.dt)[who]
         return np.where(done, SUCCESS, RUNNING).astype(np.int8)
 
-    def _talk(self, node: Node, who: Bools, inputs: Mapping[str, Floats]) -> Statuses:
-        able = np.zeros(len(who), dtype=np.bool_)
+    def _talk(self, who: Bools, inputs: Mapping[str, Floats], kept: Floats) -> Statuses:
+        able, face = np.zeros(len(who), dtype=np.bool_), np.zeros((len(who), 2))
         for n, e, a in self._each(who):
             others = self._group_of(e, a)
             if len(others):
-                able[n], face = True, self.position[e, others].mean(axis=0) - self.position[e, a]
-                self._stand(np.arange(len(who)) == n)
-                self.face[n] = face
-        return self._check(who, able)
+                able[n], face[n] = True, self.position[e, others].mean(axis=0) - self.position[e, a]
+        done = kept >= inputs["seconds"] - 1e-9
+        talks = able & (~done | (inputs["seconds"] == 0.0))
+        self._stand(talks)
+        self.face[talks] = face[talks]
+        kept[who] = np.where(able & ~done, kept + self.dt, 0.0)[who]
+        return np.where(able, np.where(done, SUCCESS, RUNNING), FAILURE).astype(np.int8)
 
     def _queue(self, node: Node, who: Bools, inputs: Mapping[str, Floats]) -> Statuses:
         target = np.full(len(who), -1, dtype=np.int64)
@@ -202,13 +205,13 @@ class BehaviorChoices:
     def _always(self, node: Node, who: Bools, inputs: Mapping[str, Floats]) -> Statuses:
         return self._check(who, who if node.kind == "AlwaysSuccess" else ~who)
 
-    _TIMERS: ClassVar[dict[str, Any]] = {"TimeExpiredCondition": _expired, "Wait": _wait}
+    _TIMERS: ClassVar[dict[str, Any]] = {"TimeExpiredCondition": _expired, "Wait": _wait, "TalkInGroup": _talk}
     _LEAVES: ClassVar[dict[str, Any]] = {
         "AlwaysSuccess": _always, "AlwaysFailure": _always,
         "IsRobotVisible": _robot_visible, "IsRobotNear": _robot_near, "IsPersonNear": _person_near,
         "IsGroupBehind": _group_behind, "IsGoalReached": _goal_reached,
         "RegularNav": _regular, "IgnoreRobot": _regular, "ImpassiveNav": _regular, "UpdateGoal": _update_goal,
-        "StandStill": _stand_still, "TalkInGroup": _talk, "QueueNav": _queue,
+        "StandStill": _stand_still, "QueueNav": _queue,
         "FollowPerson": _to_person, "ApproachPerson": _to_person,
     }  # fmt: skip
 

@@ -102,7 +102,10 @@ ACTIONS = {
     "UpdateGoal": NodeKind("take the next stop of the journey; fails without one"),
     "StandStill": NodeKind("stand in this step"),
     "Wait": NodeKind("stand for `seconds`; runs until then", {"seconds": Port(None)}),
-    "TalkInGroup": NodeKind("stand and turn to the others of the group; fails without others"),
+    "TalkInGroup": NodeKind(
+        "stand and turn to the others of the group, for `seconds` or one step; runs until then, fails without others",
+        {"seconds": Port(0.0)},
+    ),
     "QueueNav": NodeKind(
         "walk behind the nearest person who walks to the same stop and is nearer to it; without one, to the goal", {},
         "follow", ("gap", "speed"),
