@@ -247,7 +247,7 @@ def _import_trials(options: argparse.Namespace) -> int:
         file = options.file if single else options.file.with_stem(f"{options.file.stem}-{k + 1:02d}-{Path(name).stem}")
         if trial.stage.building and _copy_beside(options.original, file.parent / options.original.name):
             print(COPIED.format(options.original.name))
-        for copy in _copy_map(trial, file.parent):
+        for copy in (*_copy_map(trial, file.parent), *_copy_trees(trial, file.parent)):
             print(COPIED.format(copy))
         _write(file, trial_xml(trial))
         print(f"wrote {file}")
@@ -273,6 +273,18 @@ def _copy_map(trial: Trial, folder: Path) -> list[str]:
     for name, path in map_files(trial.stage.map, trial.stage.folder, trial.stage.trust).items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         copied += [name] if _copy_beside(path, folder / name) else []
+    return copied
+
+
+def _copy_trees(trial: Trial, folder: Path) -> list[str]:
+    """Copy the behaviour trees of an imported trial to its folder; return the names of those that were not there."""
+    copied = []
+    for behavior in {one.file: one for agent in trial.agents for one in agent.behaviors}.values():
+        home = (behavior.folder or Path.cwd()).resolve()
+        for path in behavior.files():
+            name = path.relative_to(home).as_posix()
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            copied += [name] if _copy_beside(path, folder / name) else []
     return copied
 
 
