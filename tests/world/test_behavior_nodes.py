@@ -295,3 +295,34 @@ def test_trees_that_grow_without_bound_are_refused():
     many = {f"{k}.xml": f'<root><include path="{k + 1}.xml"/></root>' for k in range(30)}
     with pytest.raises(InputError, match="more than 20 files are included"):
         parse_behavior_tree(many["0.xml"].encode(), "0.xml", lambda name: many[name].encode())
+
+
+def test_mutated_files_are_read_or_refused_with_one_sentence():
+    text = (
+        '<root main_tree_to_execute="main"><TreeNodesModel/><BehaviorTree ID="main"><Fallback name="x"><Parallel '
+        'success_count="1" failure_count="2"><Wait seconds="2"/><IsRobotVisible agent_id="{id}" distance="3"/>'
+        "</Parallel>"
+        '<Repeat num_cycles="2"><SetBlackboard output_key="far" value="{dt}"/></Repeat><SubTree ID="sub" d="far"/>'
+        '</Fallback></BehaviorTree><BehaviorTree ID="sub"><IsPersonNear distance="{d}"/></BehaviorTree></root>'
+    )
+    rng = np.random.default_rng(8)
+    words = text.replace(">", "> ").replace("=", " = ").split()
+    read, sentences = 0, set()
+    for _ in range(600):
+        data = bytearray(text.encode())
+        for _ in range(rng.integers(1, 3)):
+            at, kind = int(rng.integers(len(data))), rng.integers(3)
+            if kind == 0:
+                data[at] = int(rng.integers(32, 127))
+            elif kind == 1:
+                del data[at : at + int(rng.integers(1, 30))]
+            else:
+                data[at:at] = words[rng.integers(len(words))].encode()
+        try:
+            parse_behavior_tree(bytes(data), "t.xml")
+            read += 1
+        except InputError as error:
+            sentences.add(str(error))
+    assert read > 3
+    assert len(sentences) > 60
+    assert not any("\n" in sentence or len(sentence) > 900 for sentence in sentences)

@@ -15,8 +15,10 @@ from crowdbot.world import (
     Direction,
     JourneyAssignment,
     PeopleSource,
+    PhysicsWorld,
     PlanarWorld,
     Point,
+    Robot,
     RobotReaction,
     RobotReactions,
     WaypointSequence,
@@ -381,3 +383,28 @@ def test_people_who_enter_draw_the_tree_of_their_source_with_a_fresh_state():
     found = [person for row in seen for person in row]
     assert sorted(set(found)) == [4, 5]
     assert [found.count(4), found.count(5)] == [3, 3]
+
+
+def test_both_worlds_move_people_alike():
+    robot = Robot.load("turtlebot2")
+    scene = Scene.of(
+        [[0.0, 0.0], [5.0, 0.5], [5.0, 3.0], [5.0, 4.0]], goal=[[0.0, 0.0], [-5.0, 0.5], [4.0, 3.0], [4.0, 4.0]],
+        external=[True, False, False, False], heading=[0.0, math.pi, math.pi, math.pi], group=[-1, -1, 2, 2],
+        radius=[robot.radius, 0.25, 0.25, 0.25],
+    )  # fmt: skip
+    talks = "<Sequence><IsGoalReached/><TalkInGroup seconds='1'/><UpdateGoal/></Sequence>"
+    stops = f"<Fallback>{talks}<RegularNav/></Fallback>"
+    groups = [[(meets("CuriousNav"), 1.0)], [(tree_of(stops), 1.0)]]
+    ways = tuple(WaypointSequence((Point(4.0, y), Point(-5.0, y)), "stay") for y in (3.0, 4.0))
+    how = {
+        "reactions": RobotReactions(groups, members=[-1, 0, 1, 1]),
+        "journeys": JourneyAssignment(ways, [-1, -1, 0, 1]),
+    }
+    physics = PhysicsWorld(scene, ORCA(), {0: robot}, dt=0.1, **how)
+    planar = PlanarWorld(scene, ORCA(), {0: robot.drive}, dt=0.1, **how)
+    for _ in range(40):
+        physics.step({0: Twist(0.0, 0.0)})
+        planar.step({0: Twist(0.0, 0.0)})
+    np.testing.assert_allclose(physics.scene.position[0, 1:], planar.scene.position[0, 1:], atol=1e-3)
+    np.testing.assert_array_equal(physics.scene.memory["behavior_state"], planar.scene.memory["behavior_state"])
+    assert planar.scene.memory["stop"][0].tolist() == [0.0, 0.0, 1.0, 1.0]

@@ -30,6 +30,7 @@ KEY = re.compile(r"[A-Za-z_]\w{0,63}", re.ASCII)
 EXPLICIT = ("Action", "Condition", "Control", "Decorator")
 """Elements that name the kind of their node in the attribute ``ID``."""
 WORDS = {"true": 1.0, "false": 0.0}
+_CONSTANT = -1
 
 Load = Callable[[str], bytes]
 
@@ -130,7 +131,8 @@ class _Reader:
     trees: dict[str, tuple[Element, str, bool]] = field(default_factory=dict)
     files: set[str] = field(default_factory=set)
     entries: _Entries = field(default_factory=_Entries)
-    reads: list[tuple[Element, str, str, str, int]] = field(default_factory=list)
+    reads: list[tuple[Element, str, str, int]] = field(default_factory=list)
+    """Element, file and name of each port with the entry that it reads; ``_CONSTANT`` for a constant."""
     count: int = 0
 
     def read(self, data: bytes, place: str) -> Element:
@@ -276,18 +278,18 @@ class _Reader:
     ) -> dict[str, str]:
         """Return the attributes without those that name the person and the time step, which are to be checked."""
         rest = dict(attributes)
-        for word, holds, kinds in (("agent_id", PERSON, tuple(LEAVES)), ("time_step", STEP, TIMED)):
+        for word, kinds in (("agent_id", tuple(LEAVES)), ("time_step", TIMED)):
             if word not in rest or kind not in kinds:
                 continue
             value = self._port(element, place, scope, word, rest.pop(word), Port(None, -1e9, 1e9))
-            number = value.number if isinstance(value, Entry) else -1
-            self.reads.append((element, place, kind, word, number if number >= 0 else -1 - holds))
+            number = value.number if isinstance(value, Entry) else _CONSTANT
+            self.reads.append((element, place, word, number))
         return rest
 
     def check_reads(self) -> None:
         """Refuse ports that read entries which nothing writes, or which name another person or time step."""
-        for element, place, _, word, number in self.reads:
-            origins = self.entries.origins(number) if number >= 0 else {None}
+        for element, place, word, number in self.reads:
+            origins = {None} if number == _CONSTANT else self.entries.origins(number)
             if not origins:
                 known = ", ".join(sorted({f"{{{name}}}" for name in self.entries.names}))
                 self._refuse(
@@ -317,7 +319,7 @@ class _Reader:
         text = text.strip()
         if text.startswith("{") and text.endswith("}"):
             number = scope.entry(self._check_key(element, place, text[1:-1]))
-            self.reads.append((element, place, "", f"port {word}", number))
+            self.reads.append((element, place, f"port {word}", number))
             return Entry(number)
         value = self._constant(element, place, word, text)
         if not port.least <= value <= port.most or (port.whole and value != math.floor(value)):
