@@ -90,6 +90,27 @@ def test_vadere_becomes_a_trial_that_runs(tmp_path):
     assert min(last.values()) > 9.0  # all have passed the door and reach the target
 
 
+CONSTANT = {"type": "org.vadere.state.attributes.distributions.AttributesConstantDistribution", "updateFrequency": 12.0}
+
+
+@pytest.mark.parametrize(
+    ("target", "wait", "sentence"),
+    [
+        ({"waiter": {"enabled": True, "distribution": CONSTANT}}, 12.0, ""),
+        ({"waiter": {"enabled": False, "distribution": CONSTANT}}, 0.0, ""),
+        ({"waiter": {"enabled": True, "distribution": {"type": "AttributesPoissonDistribution"}}}, 0.0, "is drawn"),
+        ({"waitingTime": 4.0}, 4.0, ""),
+        ({"waitingTime": 4.0, "waitingTimeYellowPhase": 2.0}, 0.0, "target 2: people do not wait, since they wait tog"),
+    ],
+)
+def test_people_wait_at_the_targets_of_vadere(tmp_path, target, wait, sentence):
+    value = copy.deepcopy(VADERE)
+    value["scenario"]["topography"]["targets"][1].update(target)
+    done = import_vadere(write(tmp_path, value))
+    assert [stop.wait for stop in done.trials[0][1].journeys[1].stops] == [wait, 0.0]
+    assert sentence in " ".join(done.left_out)
+
+
 def test_old_sources_of_vadere_are_read(tmp_path):
     value = copy.deepcopy(VADERE)
     source = {"shape": rectangle(1.0, 1.0, 2.0, 2.0), "targetIds": [1], "spawnNumber": 2, "startTime": 0.0,

@@ -100,7 +100,7 @@ WEIGHTS = (
             {"start_time_s": 0, "end_time_s": 10, "sim_count": 5}, {"flow_start_time": 20, "flow_end_time": 22,
                                                                    "number": 4}]))],
          [2], [(0.5, 0.0, 10.0, 5), (2.0, 20.0, 22.0, 4)], ""),
-        ([("checkpoints/desk/waiting_time", 5.0)], [10], [], "desk: people do not wait 5.0 s, they walk on"),
+        ([("checkpoints/desk/waiting_time_distribution", "gaussian")], [10], [], "desk: all people wait for the mean"),
         ([("zones", {"z": box(5, 0, 2, 5, speed_factor=0.5)})], [10], [], "the 1 zones are not imported"),
         ([("exits/east/enable_throughput_throttling", True), ("exits/east/max_throughput", 1.5)], [10], [],
          "east: its largest flow of 1.5 per s is not imported"),
@@ -117,6 +117,11 @@ def test_variants_of_the_editor(tmp_path, changes, groups, flows, sentence):
     assert [group.count for group in trial.spawners] == groups
     assert [(flow.rate, flow.begin, flow.end, flow.max_count) for flow in trial.sources] == flows
     assert sentence in " ".join(notes)
+
+
+def test_people_wait_at_the_checkpoints_of_the_editor(tmp_path):
+    trial, _ = imported(tmp_path, changed(("checkpoints/desk/waiting_time", 5.0)))
+    assert [stop.wait for stop in trial.journeys[0].stops] == [5.0, 0.0]
 
 
 def test_models_and_distributions_of_the_editor(tmp_path):

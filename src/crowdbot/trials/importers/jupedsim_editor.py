@@ -66,7 +66,13 @@ class _Reader:
     def __init__(self, scene: ImportedScene, content: dict[str, Any]) -> None:
         self.scene, self.content = scene, content
         self.zones = {
-            name: Zone(Points.of(self._corners(name, row)), aim="random" if key == "checkpoints" else "nearest")
+            name: Zone(
+                Points.of(self._corners(name, row)),
+                aim="random" if key == "checkpoints" else "nearest",
+                wait=min(86_400.0, max(0.0, number_in(row, "waiting_time", name, 0.0)))
+                if key == "checkpoints"
+                else 0.0,
+            )
             for key in ("checkpoints", "exits")
             for name, row in self._rows(key)
         }
@@ -86,8 +92,8 @@ class _Reader:
                     f"the {len(value) if isinstance(value, list | dict) else 1} {key} are not imported: {what}"
                 )
         for name, row in self._rows("checkpoints"):
-            if number_in(row, "waiting_time", name, 0.0) > 0.0:
-                self.scene.note(f"{name}: people do not wait {row['waiting_time']} s, they walk on")
+            if row.get("waiting_time_distribution") not in (None, "", "constant"):
+                self.scene.note(f"{name}: all people wait for the mean time; the distribution of waits is not imported")
         for name, row in self._rows("exits"):
             if row.get("enable_throughput_throttling"):
                 self.scene.note(

@@ -190,9 +190,25 @@ class _Reader:
             self.journeys[stops] = Journey(
                 name=f"way{len(self.journeys) + 1}",
                 then="leave" if leaves else "stay",
-                stops=tuple(Zone(Points.of(self._shape(targets[id]))) for id in stops),
+                stops=tuple(Zone(Points.of(self._shape(targets[id])), wait=self._wait(targets[id])) for id in stops),
             )
         return self.journeys[stops].name if stops else ""
+
+    def _wait(self, target: dict[str, Any]) -> float:
+        """Return the time for which people wait at a target [s]."""
+        waiter, wait = target.get("waiter"), self._number(target, "waitingTime", 0.0)
+        name = f"target {str(target.get('id'))[:20]}"
+        if isinstance(waiter, dict) and waiter.get("enabled"):
+            distribution = waiter.get("distribution")
+            law = distribution if isinstance(distribution, dict) else {}
+            if not str(law.get("type")).endswith("AttributesConstantDistribution"):
+                self.notes[f"{name}: people do not wait, since the time is drawn; a stop has one time"] = None
+                return 0.0
+            wait = self._number(law, "updateFrequency")
+        if wait > 0.0 and (target.get("waitingTimeYellowPhase") or target.get("individualWaiting") is False):
+            self.notes[f"{name}: people do not wait, since they wait together, as at a traffic light"] = None
+            return 0.0
+        return min(86_400.0, max(0.0, wait))
 
     @property
     def _pedestrian(self) -> dict[str, Any]:

@@ -30,6 +30,10 @@ HOLD = "hold"
 who stay at their waypoint, and ``GOES_ON`` for those who go to the next one at the end of the step, wherever they are.
 """
 HOLDS, GOES_ON = 1.0, 2.0
+UNTIL = "until"
+"""Name in the memory of a scene ``[E, A]``: time at which the wait at the current waypoint ends [s], 0 before the
+arrival. It is there if people wait at a waypoint.
+"""
 
 
 @dataclass(frozen=True)
@@ -116,26 +120,58 @@ class JourneyAssignment:
                 f"JourneyAssignment: which has shape {list(np.shape(self.which))}, expected {list(scene.shape)}"
             ) from None
         memory = {**scene.memory, JOURNEY: which, STOP: np.zeros(scene.shape)}
+        if any(stop.wait > 0.0 for journey in self.journeys for stop in journey.stops):
+            memory[UNTIL] = np.zeros(scene.shape)
         return self.aim(scene.replace(memory=memory), which >= 0, seeds, ids, holds)
 
     def advance(
-        self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
+        self,
+        scene: Scene,
+        seeds: Numbers,
+        ids: Numbers,
+        holds: Callable[[Floats], Bools] | None = None,
+        time: float | Floats = 0.0,
     ) -> Scene:
         """Return the scene after people who reached a waypoint have switched to the next one or left.
 
-        The memory ``HOLD`` tells who does so regardless of their place, if it is there.
+        The memory ``HOLD`` tells who does so regardless of their place, if it is there. Others stay at a waypoint for
+        its ``wait``.
+
+        Args:
+            scene: scene after the motion of people.
+            seeds: ``[E]`` seeds of the environments.
+            ids: ``[E, A]`` identities.
+            holds: returns whether points ``[N, 2]`` have room for a body.
+            time: time since the start [s], one or ``[E]``.
         """
-        if HOLD in scene.memory:
-            held = scene.memory[HOLD] > 0.0
-            free = self._advance_free(scene.replace(external=scene.external | held), seeds, ids, holds)
-            scene = free.replace(external=scene.external)
-            scene = self._go_on(scene, scene.memory[HOLD] == GOES_ON, seeds, ids, holds)
-            moving = np.zeros(scene.shape, dtype=np.bool_)
-            for _, _, at, rows in self._parties(scene, held):
-                if at.moves:
-                    moving |= rows
-            return self.aim(scene, moving, seeds, ids, holds)
-        return self._advance_free(scene, seeds, ids, holds)
+        if HOLD not in scene.memory and UNTIL not in scene.memory:
+            return self._advance_free(scene, seeds, ids, holds)
+        hold = scene.memory.get(HOLD, np.zeros(scene.shape))
+        held, goes_on = hold > 0.0, hold == GOES_ON
+        if UNTIL in scene.memory:
+            scene, waits, over = self._wait(scene, ~held, time)
+            held, goes_on = held | waits | over, goes_on | over
+        free = self._advance_free(scene.replace(external=scene.external | held), seeds, ids, holds)
+        scene = self._go_on(free.replace(external=scene.external), goes_on, seeds, ids, holds)
+        moving = np.zeros(scene.shape, dtype=np.bool_)
+        for _, _, at, rows in self._parties(scene, held):
+            if at.moves:
+                moving |= rows
+        return self.aim(scene, moving, seeds, ids, holds)
+
+    def _wait(self, scene: Scene, who: Bools, time: float | Floats) -> tuple[Scene, Bools, Bools]:
+        """Return the scene with the ends of waits, and ``[E, A]`` which people ``who`` wait, and whose wait is over."""
+        wait = np.zeros(scene.shape)
+        for _, _, at, rows in self._parties(scene, who):
+            wait[rows] = at.wait
+        now = np.broadcast_to(np.reshape(time, (-1, 1)), scene.shape)
+        until = np.where(wait > 0.0, scene.memory[UNTIL], 0.0)
+        begins = self.reached(scene, (wait > 0.0) & (until == 0.0))
+        until[begins] = (now + wait)[begins]
+        over = (until > 0.0) & (now >= until - 1e-9)
+        waits = (until > 0.0) & ~over
+        until[over] = 0.0
+        return scene.replace(memory={**scene.memory, UNTIL: until}), waits, over
 
     def _go_on(
         self, scene: Scene, who: Bools, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None

@@ -120,7 +120,7 @@ class PeopleFlow:
     def advance(self, scene: Scene, time: float | Floats) -> Scene:
         """Return the scene at a time [s], one or ``[E]``, after journeys have advanced and new people have entered."""
         if self.journeys is not None:
-            scene = self.journeys.advance(scene, self.seeds, self.ids, self._holds)
+            scene = self.journeys.advance(scene, self.seeds, self.ids, self._holds, time)
         if self.arrivals is None or self.journeys is None:
             return scene
         scene, new = self.arrivals.let_in(scene, time, self.ids, self.following)

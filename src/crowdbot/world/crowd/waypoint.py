@@ -61,6 +61,11 @@ class Waypoint(ABC):
         """Whether the goal depends on the position of the person."""
         return False
 
+    @property
+    def wait(self) -> float:
+        """Time for which a person stays after the arrival [s]."""
+        return 0.0
+
     @abstractmethod
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return the goals ``[N, 2]`` [m] of people at ``place`` ``[N, 2]`` [m]."""
@@ -82,6 +87,9 @@ class Point(Waypoint):
     x: float = attribute(about="x coordinate", unit="m")
     y: float = attribute(about="y coordinate", unit="m")
     tolerance: float = attribute(TOLERANCE, about="arrival tolerance", unit="m", exclusive_min=0.0)
+    wait: float = attribute(
+        0.0, about="time for which people stay after their arrival", unit="s", min=0.0, max=86_400.0
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -157,6 +165,9 @@ class Zone(Waypoint):
         choices=("nearest", "random"),
     )
     tolerance: float = attribute(TOLERANCE, about="arrival tolerance of the random point", unit="m", exclusive_min=0.0)
+    wait: float = attribute(
+        0.0, about="time for which people stay after their arrival", unit="s", min=0.0, max=86_400.0
+    )
 
     def __post_init__(self) -> None:
         check(self)
