@@ -8,6 +8,7 @@ row of numbers for each person.
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -25,6 +26,8 @@ IDLE, RUNNING, SUCCESS, FAILURE = 0, 1, 2, 3
 """Statuses of nodes; a node that is not ticked yet, or has been reset, is idle."""
 PERSON, STEP = 0, 1
 """Entries of the blackboard that the world writes: ``id``, identity of the person, and ``dt``, time step [s]."""
+MOST_CYCLES = 1000
+"""Largest number of cycles of a node within one tick."""
 UNWRITTEN = math.inf
 """Value of an entry that nothing has written yet."""
 
@@ -47,6 +50,10 @@ class Node:
         ports: constant or entry of each input.
         output: entry that ``SetBlackboard`` writes.
         reaction: reaction that an action chooses, None for other nodes.
+        version: version of BehaviorTree.CPP, 3 or 4. In version 4, a child that begins and ends within one tick ends
+            the tick of ``SequenceWithMemory``, ``Repeat`` and ``RetryUntilSuccessful`` if another one or another cycle
+            follows, a sequence with memory that is halted goes on where it was, and ``Parallel`` counts all children
+            that have finished, not only those up to the one that is ticked.
         place: file and line, for messages.
     """
 
@@ -56,6 +63,7 @@ class Node:
     ports: Mapping[str, float | Entry] = field(default_factory=dict)
     output: Entry | None = None
     reaction: RobotReaction | None = None
+    version: int = 4
     place: str = ""
 
     def each(self) -> Iterator[Node]:
@@ -133,7 +141,7 @@ class BehaviorTree:
             leaf: ticks conditions and actions.
 
         Raises:
-            InputError: a node reads an entry that nothing has written.
+            InputError: a node reads an entry that nothing has written, or repeats its child without end.
         """
         found = _Tick(self, state, leaf).run(self.root, who)
         done = who & (found >= SUCCESS)
@@ -207,8 +215,8 @@ class _Tick:
             self.state[who, 2 * inner.slot] = IDLE
 
     def halt(self, node: Node, who: Bools) -> None:
-        """Stop a node that runs: it begins anew, but a sequence with memory goes on where it was."""
-        if node.kind != "SequenceWithMemory":
+        """Stop a node that runs: it begins anew, except a sequence with memory of version 4."""
+        if node.kind != "SequenceWithMemory" or node.version == 3:
             self.state[who, 2 * node.slot + 1] = 0.0
         self.reset(node, who)
 
@@ -218,14 +226,19 @@ class _Tick:
         out = np.full(len(who), SUCCESS if end == FAILURE else FAILURE, dtype=np.int8)
         for number, inner in enumerate(node.children):
             now = going & (index == number)
+            fresh = self.state[:, 2 * inner.slot] == IDLE
             found = self.run(inner, now)
             stopped, ended = now & (found == RUNNING), now & (found == end)
             out[stopped], out[ended] = RUNNING, end
-            index[now & ~stopped & ~ended] = number + 1
+            passed = now & ~stopped & ~ended
+            index[passed] = number + 1
             self.reset(node, ended)
             if not keeps:
                 index[ended] = 0.0
             going &= ~(stopped | ended)
+            if keeps and node.version == 4 and number + 1 < len(node.children):
+                out[passed & fresh] = RUNNING
+                going &= ~(passed & fresh)
         self.reset(node, going)
         index[going] = 0.0
         return out
@@ -258,13 +271,15 @@ class _Tick:
         )
         out = np.full(len(who), RUNNING, dtype=np.int8)
         slots = [2 * inner.slot for inner in node.children]
-        for inner in node.children:
+        for number, inner in enumerate(node.children):
             status = self.state[:, 2 * inner.slot]
             self.run(inner, going & (status < SUCCESS))
-            succeeded = np.sum(self.state[:, slots] == SUCCESS, axis=1)
-            failed = np.sum(self.state[:, slots] == FAILURE, axis=1)
+            counted = self.state[:, slots if node.version == 4 else slots[: number + 1]]
+            succeeded, failed = np.sum(counted == SUCCESS, axis=1), np.sum(counted == FAILURE, axis=1)
             good = going & (succeeded >= need)
             bad = going & ~good & ((count - failed < need) | (failed == bear))
+            if node.version == 3:
+                good, bad = good & (status == SUCCESS) & (need > 0.0), bad & (status == FAILURE)
             out[good], out[bad] = SUCCESS, FAILURE
             self.reset(node, good | bad)
             going &= ~(good | bad)
@@ -277,15 +292,19 @@ class _Tick:
         return np.array([IDLE, RUNNING, success, failure], dtype=np.int8)[found]
 
     def repeat(self, node: Node, who: Bools, again: int, port: str) -> Statuses:
-        """Tick the child until it has returned ``again`` often enough.
-
-        A cycle that begins and ends within one tick ends the tick with RUNNING if another one follows.
-        """
+        """Tick the child until it has returned ``again`` often enough."""
         inner, most = node.children[0], self.inputs(node, who)[port]
         cycle = self.state[:, 2 * node.slot + 1]
         out = np.full(len(who), again, dtype=np.int8)
         going = who & ((cycle < most) | (most == -1.0))
-        while np.any(going):
+        for cycles in itertools.count():
+            if not np.any(going):
+                break
+            if cycles == MOST_CYCLES:
+                raise InputError(
+                    f"{node.place}: <{node.kind}> ticks its node more than {MOST_CYCLES} times within one tick; give it"
+                    f" a node that runs for some time, or a smaller {port}"
+                )
             fresh = self.state[:, 2 * inner.slot] == IDLE
             found = self.run(inner, going)
             stopped, ended = going & (found == RUNNING), going & (found >= SUCCESS) & (found != again)
@@ -294,7 +313,8 @@ class _Tick:
             self.reset(node, going & (found >= SUCCESS))
             cycle[ended] = 0.0
             going &= ~(stopped | ended) & ((cycle < most) | (most == -1.0))
-            out[going & fresh] = RUNNING
-            going &= ~fresh
+            if node.version == 4:
+                out[going & fresh] = RUNNING
+                going &= ~fresh
         cycle[who & (out == again)] = 0.0
         return out

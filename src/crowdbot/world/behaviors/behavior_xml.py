@@ -229,7 +229,7 @@ class _Reader:
                 ports[word] = port.default
         if kind == "Parallel":
             self._check_parallel(element, place, ports)
-        return Node(kind, slot, inner, ports, None, reaction, where)
+        return Node(kind, slot, inner, ports, None, reaction, 4 if new else 3, where)
 
     def _subtree(
         self, element: Element, place: str, new: bool, scope: _Scope, path: tuple[str, ...], slot: int, depth: int,
@@ -259,7 +259,7 @@ class _Reader:
                 self.entries.sources[number].add(None)
         other, its_place, its_new = self.trees[name]
         below = self._node(other.children[0], its_place, its_new, inner, (*path, name), depth + 1)
-        return Node("SubTree", slot, (below,), {}, None, None, f"{place}:{element.line}")
+        return Node("SubTree", slot, (below,), place=f"{place}:{element.line}")
 
     def _set(self, element: Element, place: str, scope: _Scope, slot: int, attributes: dict[str, str]) -> Node:
         if set(attributes) != {"value", "output_key"}:
@@ -271,7 +271,7 @@ class _Reader:
             self._refuse(element, place, "cannot write id and dt of the person")
         value = self._port(element, place, scope, "value", attributes["value"], Port(None, -1e9, 1e9))
         self.entries.sources[output.number].add(value.number if isinstance(value, Entry) else None)
-        return Node("SetBlackboard", slot, (), {"value": value}, output, None, f"{place}:{element.line}")
+        return Node("SetBlackboard", slot, (), {"value": value}, output, place=f"{place}:{element.line}")
 
     def _without_person(
         self, element: Element, place: str, kind: str, scope: _Scope, attributes: dict[str, str]
