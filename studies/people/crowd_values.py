@@ -12,8 +12,8 @@ from crowdbot.models import CrowdModel
 from crowdbot.typing import Floats
 from crowdbot.validation.bottleneck import bottleneck_flow
 from crowdbot.validation.corridor import corridor_crowd
-from crowdbot.validation.crowd_motion import simulate_periodic
-from crowdbot.validation.evacuation import TWO_ROOMS, corner_times, hall_departures
+from crowdbot.validation.crowd_motion import each_start, simulate_periodic
+from crowdbot.validation.evacuation import CORNER_CROWD, DEPTH, DOOR_PEOPLE, LIMIT, TWO_ROOMS, corner_walks, hall_walks
 from crowdbot.validation.scenario import FREE_SPEED, SPECIFIC_FLOW, STEP, line_speed, stream_of, weidmann_speed
 from crowdbot.validation.single_file import LENGTH, file_crowd
 
@@ -108,21 +108,28 @@ def measure_crowds(model: CrowdModel, sets: Sequence[Mapping[str, float]], start
     return crowd_values
 
 
+def _ignore(share: float) -> None:
+    """Report nothing."""
+
+
 def _doors(model: CrowdModel, sets: Sequence[Mapping[str, float]], start: int) -> list[dict[str, Any]]:
     """Return flow, queues and stuck share of each set."""
     if not sets:
         return []
     numbers, each = [start] * len(sets), with_sets(model, sets)
     flow = np.mean([np.asarray(bottleneck_flow(each, door, PEOPLE, numbers, STEP)) / door for door in DOORS], axis=0)
-    rooms = TWO_ROOMS.run(each, numbers, False, lambda part: None)
-    hall = hall_departures(each, [start + 1] * len(sets))
-    corner = corner_times(each, numbers)
+    rooms = TWO_ROOMS.run(each, numbers, False, _ignore)
+    hall = hall_walks(each, DOOR_PEOPLE, (-1.0,), [start + 1] * len(sets), LIMIT, _ignore)
+    y = hall.position[..., 1]
+    left = np.any(((y < -0.5) | (y > DEPTH + 0.5)) & hall.present, axis=0).mean(axis=1)
+    corner, _ = corner_walks(each, "corner", CORNER_CROWD, numbers, 120.0, _ignore)
+    seconds = [float(walk.times[-1]) for walk in each_start(corner)]
     return [
         {
             "flow": float(flow[s]),
             "queues": (float(row["queues"][0]), float(row["queues"][1])),
-            "corner": corner[s],
-            "stuck": max(1.0 - row["out"] / row["people"], 1.0 - hall[s]),
+            "corner": seconds[s],
+            "stuck": max(1.0 - row["out"] / row["people"], 1.0 - float(left[s])),
         }
         for s, row in enumerate(rooms)
     ]

@@ -56,7 +56,7 @@ def run_doors(model: CrowdModel, numbers: Sequence[int], quick: bool, report: Re
     ]
     solids = hall_solids(HALL, DEPTH, DOOR)
     for k, sides in enumerate(((-1.0, 1.0), (-1.0,))):
-        walk = _hall(model, people, sides, numbers, limit, portion(report, k, 2))
+        walk = hall_walks(model, people, sides, numbers, limit, portion(report, k, 2))
         for own, row in zip(each_start(walk), rows, strict=True):
             y = own.position[..., 1]
             row["seconds"].append(float(own.times[-1]))
@@ -206,7 +206,7 @@ def run_long_corner(model: CrowdModel, numbers: Sequence[int], quick: bool, repo
     people, limit = (30, 50.0) if quick else (CORNER_CROWD, 120.0)
     rows: list[Row] = [{"seconds": [], "out": [], "people": people, "outside": 0.0} for _ in numbers]
     for k, name in enumerate(WAYS):
-        walk, arrived = _corner(model, name, people, numbers, limit, portion(report, k, len(WAYS)))
+        walk, arrived = corner_walks(model, name, people, numbers, limit, portion(report, k, len(WAYS)))
         for own, row in zip(each_start(walk), rows, strict=True):
             row["seconds"].append(float(own.times[-1]))
             row["out"].append(int(np.any(arrived(own.position) & own.present, axis=0).sum()))
@@ -255,23 +255,19 @@ LONG_CORNER = Check(
 )
 
 
-def hall_departures(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
-    """Return the share of people who leave the hall by the two doors of one side, for each start."""
-    walk = _hall(model, DOOR_PEOPLE, (-1.0,), numbers, LIMIT, lambda part: None)
-    y = walk.position[..., 1]
-    out = np.any(((y < -0.5) | (y > DEPTH + 0.5)) & walk.present, axis=0)
-    return [float(item) for item in out.mean(axis=1)]
-
-
-def corner_times(model: CrowdModel, numbers: Sequence[int]) -> list[float]:
-    """Return the times [s] of a crowd around a wide corner, for each start."""
-    walk, _ = _corner(model, "corner", CORNER_CROWD, numbers, 120.0, lambda part: None)
-    return [float(own.times[-1]) for own in each_start(walk)]
-
-
-def _hall(
+def hall_walks(
     model: CrowdModel, people: int, sides: tuple[float, ...], numbers: Sequence[int], limit: float, report: Report
 ) -> CrowdTracks:
+    """Return the tracks of a crowd that leaves a hall by its doors.
+
+    Args:
+        model: crowd model.
+        people: their number.
+        sides: -1 for the two doors at y = 0, 1 for those at the other side.
+        numbers: of the starts, which are environments.
+        limit: time limit [s].
+        report: called with the completed share.
+    """
     place, speed = crowds("rimea-9", people, numbers, (0.3, 0.3), (HALL - 0.3, DEPTH - 0.3))
     crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(hall_solids(HALL, DEPTH, DOOR)))
 
@@ -305,10 +301,13 @@ def _queue(walk: CrowdTracks, x: float) -> float:
     return float(np.percentile(waiting[busy], 95.0)) if np.any(busy) else 0.0
 
 
-def _corner(
+def corner_walks(
     model: CrowdModel, name: str, people: int, numbers: Sequence[int], limit: float, report: Report
 ) -> tuple[CrowdTracks, Callable[[Floats], NDArray[np.bool_]]]:
-    """Return the tracks, and the function of positions that says who has arrived."""
+    """Return the tracks in the corridor ``short``, ``corner`` or ``long``, and who has arrived by position.
+
+    The other arguments are those of :func:`hall_walks`.
+    """
     top = WAYS[name] or 30.0
     # same people at the same positions in all three
     place, speed = crowds("rimea-15", people, numbers, (0.3, -3.0), (9.7, -0.3))
