@@ -12,7 +12,6 @@ import numpy as np
 import pylsl
 import pytest
 
-import lsl_network  # noqa: F401 - before the first stream
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError, PacedClock
 from crowdbot.experiments import (
@@ -37,6 +36,7 @@ from crowdbot.experiments.comparison import looking_shares
 from crowdbot.recording import read_episode, replay
 from crowdbot.simulation import AvatarOrder
 from crowdbot.trials import parse_trial
+from lsl_network import arrived, inlet_of  # also keeps the streams on this machine
 
 pytestmark = pytest.mark.xdist_group("lsl")
 
@@ -61,23 +61,6 @@ class Nod:
         return [AvatarOrder(avatar="guide", time=at, x=1.2, y=0.0, heading=math.pi, head=head)]
 
 
-def inlet_of(name):
-    """Return an open inlet of a stream."""
-    inlet = pylsl.StreamInlet(pylsl.resolve_byprop("name", name, 1, 10.0)[0])
-    inlet.open_stream(10.0)
-    return inlet
-
-
-def everything(inlet):
-    """Return all samples that arrive until there is a pause."""
-    samples = []
-    while True:
-        values, stamps = inlet.pull_chunk(timeout=0.3)
-        if not stamps:
-            return samples
-        samples += list(zip(stamps, values, strict=True))
-
-
 @pytest.mark.live
 def test_poses_and_events_of_a_run_arrive_at_a_receiver(tmp_path):
     trial = parse_trial(MEETING)
@@ -89,7 +72,7 @@ def test_poses_and_events_of_a_run_arrive_at_a_receiver(tmp_path):
         path = tmp_path / "episode.mcap"
         BackgroundRun(trial, 0, path, PacedClock(trial.step, rate=5.0), [outlets], [Nod()]).result()
         episode = read_episode(path)
-        found = {name: everything(inlet) for name, inlet in inlets.items()}
+        found = {name: arrived(inlet) for name, inlet in inlets.items()}
         labels = inlets["robots"].info(5.0).get_channel_labels()
         for inlet in inlets.values():
             inlet.close_stream()
@@ -132,7 +115,7 @@ def test_a_session_sends_its_answers_and_keeps_both_clocks(tmp_path):
             assert runner.sinks == (outlets,)
         finally:
             runner.close()
-        events = [json.loads(values[0]) for _, values in everything(inlet)]
+        events = [json.loads(values[0]) for _, values in arrived(inlet)]
         inlet.close_stream()
     kinds = [event["event"] for event in events if event["event"] != "contact"]
     assert kinds[:3] == ["start", "answered", "answered"]

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from engine_steps import umans
 from extremes import assert_bounded, extreme, heaped
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -43,22 +44,13 @@ def smooth(time, at):
 
 
 def test_one_step_agrees_with_umans(reference, capsys):
-    steps = np.load(reference / "umans" / "crossing_PowerLaw.npz")
-    now, after, goal = (steps[name].astype(np.float64) for name in ("now", "next", "goal"))
-    place = now[..., :2]
-    scene = Scene.of(
-        place,
-        now[..., 2:4],
-        radius=0.25,
-        max_speed=1.8,
-        goal=np.broadcast_to(goal, place.shape),
-        preferred_speed=steps["pref_speed"].astype(np.float64),
-    )
+    scene, after = umans(reference, "PowerLaw")
+    place = scene.position
     model = PowerLaw(relaxation_time=0.5, neighbor_distance=5.0, max_acceleration=5.0)
-    error = np.linalg.norm(model.velocity(scene, 0.1) - after[..., 2:4], axis=-1)
+    error = np.linalg.norm(model.velocity(scene, 0.1) - after, axis=-1)
     apart = np.linalg.norm(place[:, :, None] - place[:, None], axis=-1) + 9.0 * np.eye(place.shape[1])
     free = apart.min(axis=-1) >= 0.5
-    walking = np.linalg.norm(goal - place, axis=-1) > 0.25  # the library stops at once who has the goal below
+    walking = np.linalg.norm(scene.goal - place, axis=-1) > 0.25  # the library stops at once who has the goal below
     with capsys.disabled():
         for name, some in (("all", error), ("free, not arrived", error[free & walking])):
             print(

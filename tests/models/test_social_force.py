@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from engine_steps import umans
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
@@ -98,18 +99,8 @@ def test_the_kernel_follows_the_text(variant, seed):
 
 
 def test_one_step_agrees_with_umans(reference, capsys):
-    steps = np.load(reference / "umans" / "crossing_SocialForces.npz")
-    now, after, goal = (steps[name].astype(np.float64) for name in ("now", "next", "goal"))
-    place = now[..., :2]
-    scene = Scene.of(
-        place,
-        now[..., 2:4],
-        radius=0.25,
-        max_speed=1.8,
-        goal=np.broadcast_to(goal, place.shape),
-        preferred_speed=steps["pref_speed"].astype(np.float64),
-    )
-    error = np.abs(SocialForce(variant="umans2018").velocity(scene, 0.1) - after[..., 2:4]).max(axis=-1)
+    scene, after = umans(reference, "SocialForces")
+    error = np.abs(SocialForce(variant="umans2018").velocity(scene, 0.1) - after).max(axis=-1)
     with capsys.disabled():
         print(
             f"\ncrossing_SocialForces: {np.mean(error < 1e-3):.2%} of {error.size} within 1e-3,"

@@ -7,12 +7,12 @@ import time
 import pylsl
 import pytest
 
-import lsl_network  # noqa: F401 - before the first stream
 from crowdbot.cli import main
 from crowdbot.core import InputError
 from crowdbot.experiments import read_log, read_streams
 from crowdbot.web import AppSession, Workspace, with_streams
 from crowdbot.web.experiments import ExperimentDesk, StreamChoice
+from lsl_network import arrived, inlet_of  # also keeps the streams on this machine
 
 pytestmark = [pytest.mark.live, pytest.mark.xdist_group("lsl")]
 
@@ -32,22 +32,6 @@ def pulse():
     info = pylsl.StreamInfo("pulse", "ECG", 1, 0.0, pylsl.cf_double64, "app-pulse")
     info.set_channel_labels(["rate"])
     return pylsl.StreamOutlet(info)
-
-
-def inlet_of(name):
-    inlet = pylsl.StreamInlet(pylsl.resolve_byprop("name", name, 1, 10.0)[0])
-    inlet.open_stream(10.0)
-    return inlet
-
-
-def everything(inlet):
-    """Return all samples that arrive until there is a pause."""
-    samples = []
-    while True:
-        values, stamps = inlet.pull_chunk(timeout=0.5)
-        if not stamps:
-            return samples
-        samples += values
 
 
 def wait_for(desk, *phases):
@@ -77,10 +61,10 @@ def test_a_session_sends_poses_and_answers_and_records_a_sensor(session, pulse):
         if sum(desk._streams.counts.values()) >= 5:
             break
         time.sleep(0.05)
-    poses = everything(robots)
+    poses = [values for _, values in arrived(robots)]
     assert len(poses) > 3
     assert all(len(row) == 3 for row in poses)
-    told = [json.loads(item[0]) for item in everything(events)]
+    told = [json.loads(values[0]) for _, values in arrived(events)]
     assert {"event": "answered", "question": "age", "value": 30} in told
     assert {"begin", "finish"} <= {item["event"] for item in told}
     home = session.workspace.folder / state["folder"]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from crowdbot.benchmark import measure_drives
 from crowdbot.core import Scene
 from crowdbot.humans import People
 from crowdbot.models import ORCA
@@ -20,6 +21,17 @@ def ram(mass, height, push=None):
     text = f"<robot name='ram'><link name='base'>{inertial}{beam}</link></robot>"
     drive = Omnidirectional(max_speed=5.0, max_turn_rate=1.0, max_acceleration=100.0, max_turn_acceleration=10.0)
     return Robot("ram", read_urdf(text), drive, base="planar")
+
+
+def assert_drives_as_asked(file):
+    """Import the robot of a maker and check that it drives as it is asked to."""
+    grid = measure_drives([], steps=[0.005], quick=True, makers=[file]).makers[0].grid
+    assert grid.overshoot <= 0.05
+    assert grid.steady_error <= 0.05
+    assert grid.path_error <= 0.05
+    assert grid.acceleration <= 1.1
+    assert grid.turn_acceleration <= 1.1
+    assert not grid.fallen
 
 
 def facing(robot, gap=1.0, heading=math.pi, walls=(), who="man-20", **options):

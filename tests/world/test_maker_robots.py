@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 from maker_texts import MAKERS, write_maker
-from physics_worlds import alone
+from physics_worlds import alone, assert_drives_as_asked
 
-from crowdbot.benchmark import measure_drives
 from crowdbot.benchmark.drives.laboratory import maker_robot
 from crowdbot.core import Element, Twist
 from crowdbot.world import import_robot
@@ -32,14 +31,7 @@ def test_base_and_mass_are_those_of_the_file(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", sample(DRIVEN, KINDS))
 def test_a_robot_of_a_maker_drives_as_asked(tmp_path: Path, name: str) -> None:
-    file = write_maker(tmp_path, name)
-    grid = measure_drives([], steps=[0.005], quick=True, makers=[file]).makers[0].grid
-    assert grid.overshoot <= 0.05
-    assert grid.steady_error <= 0.05
-    assert grid.path_error <= 0.05
-    assert grid.acceleration <= 1.1
-    assert grid.turn_acceleration <= 1.1
-    assert not grid.fallen
+    assert_drives_as_asked(write_maker(tmp_path, name))
 
 
 def test_a_base_that_balances_is_kept_upright(tmp_path: Path) -> None:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from physics_worlds import alone
+from physics_worlds import alone, assert_drives_as_asked
 from vendor_texts import VENDORS, write_vendor
 
-from crowdbot.benchmark import measure_drives
 from crowdbot.benchmark.drives.laboratory import maker_robot
 from crowdbot.core import Twist
 from crowdbot.world import import_robot
@@ -24,14 +23,7 @@ def test_base_and_mass_are_those_of_the_file(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", VENDORS)
 def test_a_robot_of_a_vendor_drives_as_asked(tmp_path: Path, name: str) -> None:
-    file = write_vendor(tmp_path, name)
-    grid = measure_drives([], steps=[0.005], quick=True, makers=[file]).makers[0].grid
-    assert grid.overshoot <= 0.05
-    assert grid.steady_error <= 0.05
-    assert grid.path_error <= 0.05
-    assert grid.acceleration <= 1.1
-    assert grid.turn_acceleration <= 1.1
-    assert not grid.fallen
+    assert_drives_as_asked(write_vendor(tmp_path, name))
 
 
 def test_wheels_whose_meshes_are_missing_get_the_radius_of_the_plugin(tmp_path: Path) -> None:
