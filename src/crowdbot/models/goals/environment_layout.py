@@ -38,9 +38,8 @@ class EnvironmentLayout(Goal):
 
     People turn towards their exit gradually: the predicted heading is between the current one and that to the exit.
     ``pull`` is the fraction of the turn, which increases if the next waypoint is closer than ``lookahead``.
-    :meth:`resolve` returns the median direction of all candidates, :meth:`choices` one direction for each,
-    :meth:`posterior` the probability of each exit. All goals are ``horizon`` ahead, since crowd models walk straight to
-    a goal.
+    :meth:`resolve` returns the median direction of all candidates, :meth:`choices` the direction and the probability of
+    each. All goals are ``horizon`` ahead, since crowd models walk straight to a goal.
 
     Args:
         exits: points ``[G, 2]`` or segments ``[G, 2, 2]`` [m], or points as text x y x y.
