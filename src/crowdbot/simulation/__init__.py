@@ -9,7 +9,7 @@ from .episode_digest import EpisodeDigest
 from .episode_log import EpisodeLog
 from .external_robots import OwnSource, UncommandedRobotWarning, open_own_sources
 from .failure import RunEnd, RunFailure, RunFailureWarning
-from .faults.fault_state import FaultOrder
+from .fault_state import FaultOrder
 from .orders.avatar_order import AvatarOrder, RobotPoseOrder
 from .orders.decision_orders import DecisionOrder, HungDecisionOrder, MissedDecisionOrder, RecordedDecisions
 from .orders.element_orders import AddElementOrder, ParameterOrder, RemoveElementOrder, TrialOrder

@@ -14,7 +14,7 @@ from crowdbot.models import Mixture
 from crowdbot.trials import Crowds, Door, RobotSpec, Trial, crowd_names, own
 from crowdbot.world import environment_seeds, worlds_of
 
-from .faults.fault_state import FaultState
+from .fault_state import FaultState
 from .mounted_sensor import mounted_sensors
 from .orders.order import Order
 from .robot_control import RobotControl, decision_schedule

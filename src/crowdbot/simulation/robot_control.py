@@ -30,7 +30,7 @@ from crowdbot.typing import Bools, Floats, Ints
 from crowdbot.world import Doors, Twists, World, add_rings, free_joints
 
 from .decision_timer import DecisionTimer
-from .faults.fault_state import FaultState
+from .fault_state import FaultState
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .world_builder import limits_of
 from .world_view import WorldView

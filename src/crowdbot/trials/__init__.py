@@ -45,27 +45,26 @@ if TYPE_CHECKING:
     from .builtin_names import builtin_trials as builtin_trials
     from .builtin_names import trial_groups as trial_groups
     from .builtin_names import trial_titles as trial_titles
-    from .cameras.camera import OVERVIEW as OVERVIEW
-    from .cameras.camera import Camera as Camera
-    from .cameras.camera import overview as overview
-    from .cameras.camera_remarks import camera_remarks as camera_remarks
+    from .camera import OVERVIEW as OVERVIEW
+    from .camera import Camera as Camera
+    from .camera import overview as overview
     from .crowd import Crowd as Crowd
     from .crowd import Crowds as Crowds
     from .crowd import Limits as Limits
     from .crowd import Routing as Routing
     from .crowd import crowd_names as crowd_names
     from .distribution import Distribution as Distribution
-    from .faults.fault import BlindSensor as BlindSensor
-    from .faults.fault import Fault as Fault
-    from .faults.fault import FaultSpec as FaultSpec
-    from .faults.fault import FrozenSensor as FrozenSensor
-    from .faults.fault import LateSensor as LateSensor
-    from .faults.fault import LocalizationJump as LocalizationJump
-    from .faults.fault import LocalizationOffset as LocalizationOffset
-    from .faults.fault import LostCommands as LostCommands
-    from .faults.fault import SensorFault as SensorFault
-    from .faults.fault import SlippingWheel as SlippingWheel
-    from .faults.fault import have_same_kinds as have_same_kinds
+    from .fault import BlindSensor as BlindSensor
+    from .fault import Fault as Fault
+    from .fault import FaultSpec as FaultSpec
+    from .fault import FrozenSensor as FrozenSensor
+    from .fault import LateSensor as LateSensor
+    from .fault import LocalizationJump as LocalizationJump
+    from .fault import LocalizationOffset as LocalizationOffset
+    from .fault import LostCommands as LostCommands
+    from .fault import SensorFault as SensorFault
+    from .fault import SlippingWheel as SlippingWheel
+    from .fault import have_same_kinds as have_same_kinds
     from .files.code_references import code_digest as code_digest
     from .files.code_references import code_references as code_references
     from .files.code_references import is_code as is_code
@@ -145,6 +144,7 @@ if TYPE_CHECKING:
     from .trial import EndCondition as EndCondition
     from .trial import RecordingSpec as RecordingSpec
     from .trial import Trial as Trial
+    from .validation.rates import camera_remarks as camera_remarks
     from .validation.rates import trial_remarks as trial_remarks
     from .validation.trial_checks import robot_place_problem as robot_place_problem
     from .variants import apply_values as apply_values

@@ -33,7 +33,7 @@ from crowdbot.sensors import Lidar2D, Lidar3D, Sensor, SensorSchedule
 from crowdbot.typing import Floats
 from crowdbot.world import Drive, Twists, builtin_robots, check_joint, frame, roll_pitch_yaw
 
-from .faults.fault import FaultSpec, fault_problems
+from .fault import FaultSpec, fault_problems
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose, mirrored_pose

@@ -16,7 +16,7 @@ from crowdbot.models import CrowdModel
 from crowdbot.world import ContactModel, Exit, Portal
 
 from .agent import Agent, Avatar
-from .cameras.camera import Camera
+from .camera import Camera
 from .crowd import Crowd, Crowds, Limits, Routing
 from .ground.plan import floor_plan
 from .journey import Journey

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
     from .behaviors.behavior_tree import BehaviorTree as BehaviorTree
     from .behaviors.behavior_xml import parse_behavior_tree as parse_behavior_tree
-    from .buildings.building import Building as Building
-    from .buildings.building import BuildingDoor as BuildingDoor
-    from .buildings.building import BuildingPart as BuildingPart
-    from .buildings.building import read_building as read_building
+    from .building import Building as Building
+    from .building import BuildingDoor as BuildingDoor
+    from .building import BuildingPart as BuildingPart
+    from .building import read_building as read_building
     from .crowd.arrivals import arrival_counts as arrival_counts
     from .crowd.avatars import Avatars as Avatars
     from .crowd.avatars import give_pose as give_pose

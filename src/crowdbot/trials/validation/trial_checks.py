@@ -14,7 +14,7 @@ from crowdbot.core import FreeClock, InputError, UnreadableValue, did_you_mean
 from crowdbot.core.fields import Points, quote_value
 from crowdbot.navigation import PathPlanner
 from crowdbot.trials.agent import Avatar
-from crowdbot.trials.cameras.camera import Camera
+from crowdbot.trials.camera import Camera
 from crowdbot.trials.placement.population import gap_to_robot, gap_to_walls, place, smallest_reach, start_outline
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec

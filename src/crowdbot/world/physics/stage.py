@@ -14,7 +14,7 @@ import numpy as np
 from crowdbot.core import Element, InputError, did_you_mean
 from crowdbot.core.fields import attribute, check
 from crowdbot.typing import Floats
-from crowdbot.world.buildings.building import Building
+from crowdbot.world.building import Building
 from crowdbot.world.doors.door import Door
 from crowdbot.world.ground.ground import Ground
 from crowdbot.world.stage_appearance import Appearance

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import format_xml
 from crowdbot.humans import People, region_colors, shapes
 from crowdbot.typing import Floats
-from crowdbot.world.buildings.building import BuildingPart
+from crowdbot.world.building import BuildingPart
 from crowdbot.world.physics.engine import engine
 from crowdbot.world.physics.mjcf_model import MjcfModel
 from crowdbot.world.physics.people_motion import PeopleMotion

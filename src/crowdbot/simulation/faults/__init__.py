@@ -1,1 +1,0 @@
-"""Faults of robots in a running simulation."""

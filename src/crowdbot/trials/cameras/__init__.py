@@ -1,1 +1,0 @@
-"""Fixed cameras of a trial, and what they see of the floor."""

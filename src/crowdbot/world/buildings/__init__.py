@@ -1,1 +1,0 @@
-"""Buildings in glTF: triangles with materials, and doors."""
