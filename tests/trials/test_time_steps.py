@@ -41,7 +41,7 @@ def test_steps_that_divide_no_period_pass(step: str, tmp_path: Path, capsys: pyt
             "<robot> control-period 0.05 s is shorter than the time step of 0.07 s; take at least 0.07 s",
         ),
         ({"rate": 20}, "<sensor> rate 20 Hz: 0.05 s is shorter than the time step of 0.07 s"),
-        ({"period": 0.06}, "<recording> recording period 0.06 s is shorter than the time step of 0.07 s"),
+        ({"period": 0.06}, "<recording> period 0.06 s is shorter than the time step of 0.07 s"),
     ],
 )
 def test_a_period_shorter_than_the_step_is_an_error(changed: dict[str, float], sentence: str) -> None:
