@@ -151,7 +151,7 @@ class LearnedNavigator(Navigator):
 
     def act(self, observation: Observation) -> Twist:
         out, asking = np.zeros((1, 3)), np.ones(1, np.bool_)
-        self._move(_as_batch(observation), asking, out)
+        self._move(as_batch(observation), asking, out)
         return Twist(*out[0].tolist())
 
     def _kernels(self) -> BatchKernels | None:
@@ -212,8 +212,14 @@ class PolicyNavigator(LearnedNavigator):
         return inputs.axis, shares
 
 
-def _as_batch(observation: Observation) -> ObservationBatch:
-    """Return one observation as a batch."""
+def as_batch(observation: Observation) -> ObservationBatch:
+    """Return one observation as a batch, without its readings and tracks.
+
+    >>> from crowdbot.navigation import DriveLimits
+    >>> here = Observation(pose=(0.0, 0.0, 0.0), goal=(0.0, 4.0), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.25)
+    >>> len(as_batch(here))
+    1
+    """
     people, count = observation.people, len(observation.people)
     seen = AgentsInView(
         people.position.reshape(1, count, 2),
@@ -230,6 +236,7 @@ def _as_batch(observation: Observation) -> ObservationBatch:
         radius=np.array([observation.radius], np.float64),
         limits=observation.limits,
         dt=float(observation.dt),
+        time=np.array([observation.time], np.float64),
         people=seen,
         walls=observation.walls,
     )
