@@ -1,13 +1,15 @@
-"""Train the navigators ``policy`` and ``attention-policy`` with PPO of stable-baselines3 in crowds.
+"""Train the navigators ``policy``, ``attention-policy`` and ``recurrent-policy`` with PPO of stable-baselines3.
 
     pip install 'crowdbot[gym]' stable-baselines3
     python train_navigator.py --out weights
     python train_navigator.py --network attention --out weights
+    python train_navigator.py --network recurrent --out weights
     crowdbot evaluate crowdnav-circle-5 --navigators "orca, policy file=weights/policy.npz" --seeds 0:200
 
 The network is that of the navigator: two layers for each person, whose outputs are pooled by their maximum or weighed
-by attention, and three for the action, a velocity in the frame of the goal. ``weights/policy.npz`` or
-``weights/attention-policy.npz`` has the weights, and ``weights/model.zip`` the model of stable-baselines3 with its value
+by attention, and three for the action, a velocity in the frame of the goal; ``recurrent`` has a recurrent network over
+the last positions of each person before these layers. ``weights/policy.npz``, ``weights/attention-policy.npz`` or
+``weights/recurrent-policy.npz`` has the weights, and ``weights/model.zip`` the model of stable-baselines3 with its value
 and optimiser. Ctrl-C ends the training early and keeps both.
 """
 
@@ -29,17 +31,25 @@ from train_with_stable_baselines3 import OUTCOMES, CrowdVecEnv, OutcomeTable
 from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
 from crowdbot.gym import ActionForm, ObservationForm, Reward
 from crowdbot.navigation import (
+    BODY_VALUES,
     FACING_VALUES,
     LAYERS,
     MOST_ATTENDED,
     OWN_VALUES,
     PERSON_VALUES,
     WALL_DIRECTIONS,
+    WINDOW_STEPS,
+    WINDOW_VALUES,
     AttentionWeights,
     PolicyWeights,
+    RecurrentWeights,
     attention_inputs,
+    empty_memory,
     goal_frame_twists,
     policy_inputs,
+    recurrent_inputs,
+    remember,
+    with_memory,
 )
 from crowdbot.trials import load_trial
 
@@ -49,7 +59,7 @@ WALLED = (
     "crowdnav-circle-20, frontal, doorway, entering-room, corner-traffic, block, four-blocks, perpendicular-flow, "
     "random-hall layout=1"
 )
-TRIALS = {"pooled": CROSSINGS, "attention": f"{CROSSINGS}, {WALLED}"}
+TRIALS = {"pooled": CROSSINGS} | dict.fromkeys(("attention", "recurrent"), f"{CROSSINGS}, {WALLED}")
 REWARD = Reward(success=1.0, collision=-1.0, discomfort_distance=0.2, discomfort=1.0, progress=0.1)
 FIRST_CASE = 2**31 + 1000
 """Smallest seed of the cases of the test; the seeds that a training draws are below 2**31."""
@@ -65,18 +75,34 @@ class PolicyObservation(ObservationForm):
     def shapes(self, beams):
         if self.network == "pooled":
             return {"own": (len(OWN_VALUES),), "people": (MAX_PEOPLE, len(PERSON_VALUES)), "present": (1,)}
-        own, people = len(OWN_VALUES) + len(FACING_VALUES), (MOST_ATTENDED, len(PERSON_VALUES))
-        return {"own": (own,), "people": people, "present": (1,), "walls": (WALL_DIRECTIONS,)}
+        shapes = {"own": (len(OWN_VALUES) + len(FACING_VALUES),), "present": (1,), "walls": (WALL_DIRECTIONS,)}
+        if self.network == "attention":
+            return shapes | {"people": (MOST_ATTENDED, len(PERSON_VALUES))}
+        some = 1 + MOST_ATTENDED
+        windows = {"windows": (some, WINDOW_STEPS, len(WINDOW_VALUES)), "steps": (some,)}
+        return shapes | windows | {"bodies": (MOST_ATTENDED, len(BODY_VALUES))}
 
     def bounds(self, name, longest):
         return -np.full(1, np.inf), np.full(1, np.inf)
 
     def arrays(self, batch, scan):
-        found = policy_inputs(batch, MAX_PEOPLE) if self.network == "pooled" else attention_inputs(batch)
+        if self.network == "recurrent":
+            batch = self.remembered(batch)
+            found = recurrent_inputs(batch)
+        else:
+            found = policy_inputs(batch, MAX_PEOPLE) if self.network == "pooled" else attention_inputs(batch)
         parts = found._asdict()
         self.known.update(batch=batch, axis=parts.pop("axis"))
         parts["present"] = found.present[:, None]
         return {name: value.astype(np.float32) for name, value in parts.items()}
+
+    def remembered(self, batch):
+        """Return the observations with where people were, in place of their velocities."""
+        memory = self.known.get("memory")
+        if memory is None or len(memory) != len(batch):
+            memory = empty_memory(len(batch), batch.dt)
+        memory = self.known["memory"] = remember(memory, batch)
+        return with_memory(batch, memory)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -187,6 +213,40 @@ class AttendedPeople(BaseFeaturesExtractor):
         return torch.cat([(weight * found).sum(dim=1), own, walls], dim=1)
 
 
+class RememberedPeople(BaseFeaturesExtractor):
+    """Recurrent networks over where the robot and people were, weighed by attention, then robot and walls."""
+
+    def __init__(self, observation_space):
+        super().__init__(observation_space, RecurrentWeights.widths["action1"][0])
+        for name, widths in RecurrentWeights.widths.items():
+            if not name.startswith("action"):
+                setattr(self, name, torch.nn.Linear(*widths))
+
+    def run(self, edge, windows, steps):
+        """Return the states [M, H] after the last steps of windows [M, T, F]."""
+        inputs, layer = getattr(self, f"{edge}_input")(windows), getattr(self, f"{edge}_state")
+        state = windows.new_zeros(len(windows), layer.in_features)
+        for t, row in enumerate(inputs.unbind(dim=1)):
+            (reset, update, new), gates = row.chunk(3, dim=1), layer(state).chunk(3, dim=1)
+            new = torch.tanh(new + torch.sigmoid(reset + gates[0]) * gates[2])
+            new = new + torch.sigmoid(update + gates[1]) * (state - new)
+            state = torch.where(steps[:, None] >= windows.shape[1] - t, new, state)
+        return state
+
+    def forward(self, observations):
+        own, windows, steps, bodies = (observations[name] for name in ("own", "windows", "steps", "bodies"))
+        there = torch.arange(bodies.shape[1])[None] < observations["present"]
+        robot = torch.cat([self.run("temporal", windows[:, 0], steps[:, 0]), own], dim=1)
+        states = self.run("spatial", windows[:, 1:][there], steps[:, 1:][there])  # of those who are there
+        both = torch.cat([states, bodies[there], own[:, None].expand(-1, there.shape[1], -1)[there]], dim=1)
+        embedded = own.new_zeros(*there.shape, self.person2.out_features)
+        embedded[there] = torch.relu(self.person2(torch.relu(self.person1(both))))
+        query = self.query(robot)
+        score = (self.key(embedded) * query[:, None]).sum(dim=2) / query.shape[1] ** 0.5
+        weight = torch.softmax(score.masked_fill(~there, -1e9), dim=1)
+        return torch.cat([(weight[..., None] * embedded).sum(dim=1), robot, observations["walls"]], dim=1)
+
+
 def make_model(envs, length, seed, network="pooled"):
     """Return PPO with the network of the navigator; ``length`` is the number of steps between two updates."""
     kind, extractor = NETWORKS[network]
@@ -227,7 +287,11 @@ def network_weights(model):
     return kind.of_layers(dict(zip(kind.widths, arrays, strict=True)))
 
 
-NETWORKS = {"pooled": (PolicyWeights, PooledPeople), "attention": (AttentionWeights, AttendedPeople)}
+NETWORKS = {
+    "pooled": (PolicyWeights, PooledPeople),
+    "attention": (AttentionWeights, AttendedPeople),
+    "recurrent": (RecurrentWeights, RememberedPeople),
+}
 """Weights of the navigator, and the part of the network before the layers of the action."""
 
 
@@ -279,7 +343,9 @@ def train(model, options, trials, table, network_weights):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--network", choices=NETWORKS, default="pooled", help="of policy, or of attention-policy")
+    parser.add_argument(
+        "--network", choices=NETWORKS, default="pooled", help="of policy, attention-policy or recurrent-policy"
+    )
     parser.add_argument("--trials", help="trials with values, separated by commas (default: TRIALS of the network)")
     add_options(parser, environments=256, cases=200)
     options = parser.parse_args()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.navigation import AttentionWeights, PolicyWeights
+from crowdbot.navigation import AttentionWeights, PolicyWeights, RecurrentWeights
 from crowdbot.recording import run
 from crowdbot.trials import load_trial
 
@@ -22,6 +22,7 @@ import torch
 from train_navigator import GoalFrame, make_model, network_weights, parse_trials
 from crowdbot.navigation.planners.attention_policy import apply_attention
 from crowdbot.navigation.planners.policy_kernels import apply_network
+from crowdbot.navigation.planners.recurrent_policy import apply_recurrent
 
 network, trials = sys.argv[2:]
 envs = GoalFrame(parse_trials(trials), 6, network)
@@ -29,15 +30,26 @@ assert envs.num_envs == 6
 model = make_model(envs, 4, 3, network)
 envs.seed(5)
 seen = envs.reset()
+if network == "recurrent":
+    for _ in range(7):  # windows of several steps
+        envs.step_async(np.full((6, 2), 0.2, np.float32))
+        seen = envs.step_wait()[0]
+    assert (seen["steps"][:, 0] == [6, 6, 6, 3, 3, 3]).all()
 with torch.no_grad():
+    model.policy.action_net.weight *= 100.0  # the first actions are nearly equal
     tensors, _ = model.policy.obs_to_tensor(seen)
     wanted = model.policy.get_distribution(tensors).distribution.mean.numpy()
 out = np.zeros((6, 2))
-inputs = [seen["own"].astype(float), seen["people"].astype(float), seen["present"][:, 0].astype(np.int64)]
-if network == "attention":
-    inputs.append(seen["walls"].astype(float))
+names = {
+    "pooled": ["own", "people", "present"],
+    "attention": ["own", "people", "present", "walls"],
+    "recurrent": ["own", "windows", "steps", "bodies", "present", "walls"],
+}[network]
+inputs = [seen[name].astype(np.int64 if name in ("steps", "present") else float) for name in names]
+inputs[names.index("present")] = inputs[names.index("present")][:, 0]
+if network != "pooled":
     assert (seen["walls"][3:].max(axis=1) > 0.0).all()  # of the second trial
-apply = apply_network if network == "pooled" else apply_attention
+apply = {"pooled": apply_network, "attention": apply_attention, "recurrent": apply_recurrent}[network]
 apply(np.ones(6, bool), *inputs, out, *network_weights(model).layers())
 np.testing.assert_allclose(out, wanted, atol=1e-5)
 assert seen["present"][:, 0].tolist() == [2, 2, 2, 1, 1, 1]
@@ -66,6 +78,7 @@ def run_program(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     [
         ("pooled", "crowdnav-circle-5 people=2, crowdnav-square-5 people=1"),
         ("attention", "crowdnav-circle-5 people=2, frontal"),
+        ("recurrent", "crowdnav-circle-5 people=2, frontal"),
     ],
 )
 def test_the_navigator_has_the_network_of_the_training(tmp_path: Path, network: str, trials: str) -> None:
@@ -76,10 +89,12 @@ def test_the_navigator_has_the_network_of_the_training(tmp_path: Path, network: 
 
 @pytest.mark.program
 @pytest.mark.parametrize(
-    ("network", "kind"), [("pooled", PolicyWeights), ("attention", AttentionWeights)], ids=["pooled", "attention"]
+    ("network", "kind"),
+    [("pooled", PolicyWeights), ("attention", AttentionWeights), ("recurrent", RecurrentWeights)],
+    ids=["pooled", "attention", "recurrent"],
 )
 def test_a_short_training_writes_weights_that_the_navigator_reads(
-    tmp_path: Path, network: str, kind: type[PolicyWeights | AttentionWeights]
+    tmp_path: Path, network: str, kind: type[PolicyWeights | AttentionWeights | RecurrentWeights]
 ) -> None:
     words = ["--network", network, "--trials", "crowdnav-circle-5 people=2", "--steps", 600, "--environments", 8]
     done = run_program(EXAMPLE, *words, "--cases", 3, "--out", "mine", cwd=tmp_path)

@@ -32,6 +32,7 @@ OTHERS = (
     "predicted-occupancy",
     "process",
     "real-robot",
+    "recurrent-policy",
     "ros2",
     "rosbridge",
     "scan-map",

@@ -33,6 +33,18 @@ from .planners.policy_kernels import OWN_VALUES, PERSON_VALUES
 from .planners.policy_weights import LAYERS, PolicyWeights, policy_file
 from .planners.potential_field import PotentialFieldNavigator
 from .planners.predicted_occupancy import PredictedOccupancyNavigator
+from .planners.recurrent_policy import (
+    BODY_VALUES,
+    WINDOW_STEPS,
+    WINDOW_VALUES,
+    RecurrentInputs,
+    RecurrentPolicyNavigator,
+    RecurrentWeights,
+    empty_memory,
+    recurrent_inputs,
+    remember,
+    with_memory,
+)
 from .planners.scan_policy import (
     SCAN_CHANNELS,
     SCAN_LAGS,
@@ -59,6 +71,7 @@ from .wrappers.scan_map import ScanMapNavigator
 
 __all__ = [
     "ATTENTION_LAYERS",
+    "BODY_VALUES",
     "DISC",
     "FACING_VALUES",
     "LAYERS",
@@ -72,6 +85,8 @@ __all__ = [
     "SCAN_STRIDES",
     "SCAN_VALUES",
     "WALL_DIRECTIONS",
+    "WINDOW_STEPS",
+    "WINDOW_VALUES",
     "Action",
     "AgentsInView",
     "AttentionInputs",
@@ -98,6 +113,9 @@ __all__ = [
     "ProcessNavigator",
     "RDSNavigator",
     "RealRobotNavigator",
+    "RecurrentInputs",
+    "RecurrentPolicyNavigator",
+    "RecurrentWeights",
     "Ros2Navigator",
     "RosbridgeNavigator",
     "SafetyLayer",
@@ -121,9 +139,13 @@ __all__ = [
     "copy_memory",
     "drive_twist",
     "dynamic_window_twist",
+    "empty_memory",
     "goal_frame_twists",
     "policy_file",
     "policy_inputs",
+    "recurrent_inputs",
+    "remember",
     "remember_scan",
     "scan_inputs",
+    "with_memory",
 ]
