@@ -1,15 +1,18 @@
-"""The age of what a client reads that takes one message in 0.5 s, over each transport."""
+"""The age of what a client reads that takes one message in 0.5 s, over each transport; small messages go at once."""
 
 from __future__ import annotations
 
 import asyncio
+import gc
+import socket
 
 import aiohttp
 import pytest
-from bridge_runs import MemoryTransport, Running, endless_trial
+from bridge_runs import MemoryTransport, Running, endless_trial, wait
 from partner_runs import LOCAL, ages
 
 from crowdbot.benchmark.speed.bridge_viewer import FOXGLOVE, Foxglove, Rosbridge
+from crowdbot.bridges.challenge_server import ChallengeServer
 from crowdbot.bridges.foxglove import FoxgloveServer
 from crowdbot.bridges.rosbridge.server import RosbridgeServer
 
@@ -46,6 +49,34 @@ def test_a_reader_of_two_scans_a_second_gets_the_newest(kind, client, protocols)
 
         found = asyncio.run(socket_ages(server.port, client, protocols, now))
     assert max(found) < OLDEST, found
+
+
+@pytest.mark.parametrize("kind", [RosbridgeServer, FoxgloveServer, ChallengeServer])
+def test_a_small_message_does_not_wait_for_the_receipt_of_the_one_before(kind):
+    """Nagle's algorithm keeps it back for up to 40 ms, until the client has confirmed the last one."""
+    server = kind(port=0)
+    with (
+        Running(endless_trial(600.0), [server]),
+        socket.create_connection(("127.0.0.1", server.port), timeout=60.0) as client,
+    ):
+        wait(lambda: accepted(client))
+        (connection,) = accepted(client)
+        wait(lambda: connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+
+
+def accepted(client):
+    """Return the sockets of this process at the other end of a connection."""
+    here = client.getsockname()
+    sockets = [item for item in gc.get_objects() if isinstance(item, socket.socket) and item.fileno() >= 0]
+    return [item for item in sockets if item.family == client.family and peer_of(item) == here]
+
+
+def peer_of(connection):
+    """Return the address at the other end of a socket, or None."""
+    try:
+        return connection.getpeername()
+    except OSError:
+        return None
 
 
 @pytest.mark.parametrize("transport", ["ros2", "tcp"])

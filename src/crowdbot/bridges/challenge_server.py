@@ -268,6 +268,7 @@ class ChallengeServer:
             except TimeoutError:
                 continue
             with client, contextlib.suppress(OSError):
+                client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 client.settimeout(LOOK)
                 self._talk(client)
 
