@@ -33,7 +33,8 @@ from crowdbot.evaluation import (
 )
 from crowdbot.evaluation.job import RunJob
 from crowdbot.evaluation.pareto import pareto_svg
-from crowdbot.simulation import simulate
+from crowdbot.navigation import PolicyWeights, policy_file
+from crowdbot.simulation import Simulation, simulate
 from crowdbot.trials import Trial, load_trial, trial_xml
 
 SHY = """
@@ -162,6 +163,42 @@ def test_a_changed_navigator_is_run_again(tmp_path: Path, monkeypatch: pytest.Mo
     (tmp_path / "shy.py").write_text(SHY.replace("Twist(0.1)", "Twist(0.2)"))
     evaluate(plan, tmp_path / "parts")
     assert len(list((tmp_path / "parts").glob("*.jsonl"))) == 2
+
+
+def test_weights_of_the_working_folder_are_read_before_the_first_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "halls").mkdir()
+    (tmp_path / "halls/hall.xml").write_text(trial_xml(load_trial("frontal", duration=1.0)))
+    weights, card = PolicyWeights.read(policy_file())
+    slower = dataclasses.replace(weights, action3_weight=0.5 * weights.action3_weight)
+    methods = parse_methods("policy file=own.npz")
+    for parts, source in ((tmp_path / "a", "frontal"), (tmp_path / "b", "halls/hall.xml")):
+        weights.save(tmp_path / "own.npz", card)
+        plan = EvaluationPlan([load_trial(source, duration=1.0)], methods, seeds=range(2))
+        assert {row.outcome for row in evaluate(plan, parts).cells[0].runs} == {"timeout"}
+        slower.save(tmp_path / "own.npz", card)  # the same name, other values
+        evaluate(plan, parts)
+        assert len(list(parts.glob("*.jsonl"))) == 2
+    (tmp_path / "own.npz").unlink()
+    with pytest.raises(TrialError, match=r"navigator file=\"own.npz\": there is no file 'own.npz'"):
+        EvaluationPlan([load_trial("frontal")], methods, seeds=range(2))
+    with pytest.raises(TrialError, match=r"attention-policy.*person1_weight must be"):
+        EvaluationPlan([load_trial("frontal")], parse_methods(f"attention-policy file={policy_file()}"), seeds=range(2))
+
+
+def test_weights_that_vanish_after_the_plan_are_failures_of_the_runs(tmp_path: Path) -> None:
+    file = tmp_path / "own.npz"
+    file.write_bytes(policy_file().read_bytes())
+    plan = EvaluationPlan([load_trial("frontal", duration=1.0)], parse_methods(f"policy file={file}"), seeds=range(2))
+    (cell,) = plan.cells
+    simulation = Simulation(cell.variant, seeds=[0, 1])
+    file.unlink()
+    simulation.advance()
+    assert [failure.message.partition(";")[0] for failure in simulation.failures] == [
+        f"InputError: there is no file {file}"
+    ] * 2
 
 
 def test_a_seed_with_which_the_trial_is_impossible_is_invalid_and_counts_nowhere() -> None:

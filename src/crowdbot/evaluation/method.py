@@ -72,7 +72,8 @@ class Method:
             robot.children += (had or [Element("safety")]) if self.safety else []
         if robot_type:
             replace_robot(robot, _relative(robot_type, trial.folder, folder))
-        trust = trust or _all_inside((self.type, robot_type), trial.folder, folder)
+        files = [value for _, value in self.parameters if _is_file_name(value)]
+        trust = trust or _all_inside((self.type, robot_type, *files), trial.folder, folder)
         place = f"trial {trial.name!r} with {self.name!r}" + (f" on {robot_type!r}" if robot_type else "")
         try:
             new = parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust)
@@ -82,7 +83,9 @@ class Method:
 
     def _element(self, folder: Path | None, base: Path | None) -> Element:
         element = Element("navigator")
-        element.attributes.update({"type": _relative(self.type, folder, base)} | dict(self.parameters))
+        element.attributes["type"] = _relative(self.type, folder, base)
+        for name, value in self.parameters:
+            element.attributes[name] = _relative(value, folder, base) if _is_file_name(value) else value
         return element
 
 
@@ -142,6 +145,15 @@ def _parse_method(text: str) -> Method:
             raise InputError(f"navigator {text.strip()!r}: {setting!r} must be name=value, such as time-horizon=3")
         parameters.append((match[1], match[2]))
     return Method(" ".join([kind, *settings]), bare, tuple(parameters), safety)
+
+
+def _is_file_name(value: str) -> bool:
+    """Return whether the value of a parameter looks like a file: it has an ending and is no number."""
+    try:
+        float(value)
+    except ValueError:
+        return bool(Path(value).suffix)
+    return False
 
 
 def _relative(name: str, folder: Path | None, base: Path | None) -> str:

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from crowdbot.core import InputError, each
-from crowdbot.trials import code_digest, needs_trust
+from crowdbot.recording import files_digest
+from crowdbot.trials import Trial, code_digest, needs_trust
 
 from .job import RunJob, RunRow, append_rows, read_rows, run_job
 from .own_metric import is_own_metric, metric_source
@@ -60,7 +61,7 @@ def evaluate(
         RunJob(k, cell.xml, cell.variant.folder, (), plan.trust or _is_allowed(plan, cell), plan.families)
         for k, cell in enumerate(plan.cells)
     ]
-    files = [] if folder is None else [folder / f"{_key(job)}.jsonl" for job in jobs]
+    files = [] if folder is None else [folder / f"{_key(job, plan.cells[job.cell].variant)}.jsonl" for job in jobs]
     rows: list[dict[int, RunRow]] = [{row.seed: row for row in read_rows(file)} for file in files] or [{} for _ in jobs]
     left = [replace(job, seeds=tuple(seed for seed in seeds if seed not in rows[job.cell])) for job in jobs]
     done = sum(seed in own for own in rows for seed in seeds)
@@ -121,7 +122,7 @@ def _in_parallel(jobs: Sequence[RunJob], workers: int, cluster: str | None) -> I
         yield parts[number].cell, rows
 
 
-def _key(job: RunJob) -> str:
+def _key(job: RunJob, trial: Trial) -> str:
     """Return a name for the rows of a cell, which changes with everything that they depend on."""
     own = [metric_source(name) for name in job.families if is_own_metric(name)]
-    return code_digest(job.xml, job.folder, str(job.families), *own)
+    return code_digest(job.xml, job.folder, files_digest(trial), str(job.families), *own)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import CrowdbotError, InputError, MissingExtra, run_saved_jobs
+from crowdbot.recording import files_digest
 from crowdbot.simulation import Episode, RunFailureWarning, simulate_variants
 from crowdbot.trials import Trial, code_digest, parse_trial, trial_xml
 
@@ -223,7 +224,7 @@ class SampleRunner:
         self._folder, self._workers, self._cluster = folder, workers, cluster
         self._progress = progress
         self._xml = trial_xml(space.trial)
-        self._code = code_digest(self._xml, space.trial.folder)
+        self._code = code_digest(self._xml, space.trial.folder, files_digest(space.trial))
 
     @property
     def remaining(self) -> int:

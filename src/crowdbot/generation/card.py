@@ -220,5 +220,5 @@ def generate(
 def _key(job: ShardJob) -> str:
     """Return a name for a job, which changes with everything that its files depend on."""
     return code_digest(
-        job.xml, job.folder, str(job.seeds), job.kind, str(job.compressed), str(job.images), str(job.kitti)
+        job.xml, job.folder, job.files, str(job.seeds), job.kind, str(job.compressed), str(job.images), str(job.kitti)
     )

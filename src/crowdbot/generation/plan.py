@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from crowdbot.core import CrowdbotError, InputError, did_you_mean
+from crowdbot.recording import files_digest
 from crowdbot.sensors import PRESETS, DepthCamera, Lidar2D, Lidar3D, RGBCamera, Sensor, preset
 from crowdbot.trials import Mount, Trial, check_trial, expand_sweeps, trial_xml
 
@@ -36,6 +37,7 @@ class ShardJob:
         out: folder of the shard.
         trust: whether code from outside the folder of the trial may be loaded.
         kitti: whether images, boxes and point clouds are written in the folders of KITTI.
+        files: hash of the files of the trial, see :func:`crowdbot.recording.files_digest`.
     """
 
     name: str
@@ -49,6 +51,7 @@ class ShardJob:
     out: Path
     trust: bool
     kitti: bool = False
+    files: str = ""
 
 
 @dataclass(frozen=True)
@@ -123,13 +126,13 @@ class GenerationPlan:
         """Return the shards; they depend on the plan only."""
         shard_jobs = []
         for name, variant in zip(self.names, self.variants, strict=True):
-            count = self.seeds_per_shard(variant)
+            count, files = self.seeds_per_shard(variant), files_digest(variant)
             for number, begin in enumerate(range(0, len(self.seeds), count)):
                 seeds = tuple(int(seed) for seed in self.seeds[begin : begin + count])
                 shard_jobs.append(
                     ShardJob(
                         f"{_file_name(name)}-{number:06d}", name, trial_xml(variant), variant.folder, seeds, self.kind,
-                        self.compressed, self.coco, out, self.trust, self.kitti,
+                        self.compressed, self.coco, out, self.trust, self.kitti, files,
                     )
                 )  # fmt: skip
         if len(shard_jobs) > MOST_SHARDS:

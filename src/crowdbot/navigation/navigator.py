@@ -9,6 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -56,6 +57,9 @@ class Navigator(ABC):
     always_returns: ClassVar[bool] = False
     """Whether every decision returns soon, so that no limit of real time watches it. A subclass does not inherit it."""
 
+    file_parameters: ClassVar[tuple[str, ...]] = ()
+    """Parameters that name files: in a trial, paths start from its folder, and a recording keeps the files."""
+
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         reset_undeclared(cls, always_returns=False)
@@ -63,6 +67,17 @@ class Navigator(ABC):
     def begin(self, observation: Observation) -> Any:
         """Return the memory before the first decision; None without memory."""
         return None
+
+    def check_files(self) -> None:
+        """Read the files of :attr:`file_parameters`, so that a wrong one is told before a run; here, they must exist.
+
+        Raises:
+            InputError: a file is missing, or is not what the navigator needs.
+        """
+        for name in self.file_parameters:
+            file = getattr(self, name)
+            if file and not Path(file).is_file():
+                raise InputError(f"{self._name('')} {name}: there is no file {file}")
 
     @abstractmethod
     def act(self, observation: Observation, *args: Any, **kwargs: Any) -> Any:
@@ -147,7 +162,11 @@ class Navigator(ABC):
         decisions, rows = Decisions.still(memories), list(range(len(batch)))
         if kernels := self._kernels():
             begin = timer() if timer else 0.0
-            decided = kernels(batch, decisions.twist)
+            try:
+                decided = kernels(batch, decisions.twist)
+            except Exception as error:  # such as weights that have gone; the world goes on
+                decisions.failures.update(dict.fromkeys(rows, error))
+                return decisions
             share_time(decisions, decided, begin, timer)
             rows = np.flatnonzero(~decided).tolist()
         self._decide_rows(rows, batch, decisions, robot, timer, limit)

@@ -407,7 +407,6 @@ def _pair(place: Floats, legs: Ints, stride: float, partner: Ints) -> None:
 
 FEWEST = 2.0
 """A person farther away than the distance at which this many beams meet it is not expected to be found."""
-NO_WALLS = np.zeros((0, 4))
 
 
 @dataclass(frozen=True, kw_only=True)

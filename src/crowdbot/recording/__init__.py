@@ -1,6 +1,6 @@
 """Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
-from .attachments import AttachedFile, SkippedAttachmentWarning, named_files, write_trial_files
+from .attachments import AttachedFile, SkippedAttachmentWarning, files_digest, named_files, write_trial_files
 from .episode_branch import branch
 from .episode_export import READING_TABLES, export, folder_of
 from .episode_reader import RecordedEpisode, iterate_steps, read_episode
@@ -35,6 +35,7 @@ __all__ = [
     "branch",
     "episode_path",
     "export",
+    "files_digest",
     "folder_of",
     "is_latched",
     "iterate_steps",

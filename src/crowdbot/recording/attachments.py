@@ -124,6 +124,17 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
     return dict(sorted(found.items()))
 
 
+def files_digest(trial: Trial) -> str:
+    """Return a hash of the names and contents of all files of a trial, see :func:`named_files`.
+
+    >>> from crowdbot.trials import load_trial
+    >>> files_digest(load_trial("frontal")) == files_digest(load_trial("overtaking"))  # neither has files
+    True
+    """
+    rows = (f"{name} {_digest(path)}\n" for name, (_, path) in named_files(trial).items())
+    return hashlib.blake2b("".join(rows).encode(), digest_size=12).hexdigest()
+
+
 def _parts(thing: Any) -> Iterator[Any]:
     """Yield an element and all its parts, including plug-ins."""
     yield thing

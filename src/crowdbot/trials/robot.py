@@ -34,6 +34,7 @@ from crowdbot.typing import Floats
 from crowdbot.world import Drive, Twists, builtin_robots, check_joint, frame, roll_pitch_yaw
 
 from .fault import FaultSpec, fault_problems
+from .files.trial_files import resolve_file
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .robots.predictor import RobotPredictor, forecast_problems
 from .robots.robot_pose import RobotPose, mirrored_pose
@@ -413,6 +414,7 @@ class RobotSpec:
         others = (*inputs, *rider_problems(self.rider_kind, self.body.seat))
         for problem in (*safety_problems(self.safety, self.navigator), *forecasts, *others):
             raise InputError(problem)
+        _ = self._with_files  # reads them
         for problem in fault_problems(self.faults, self.sensors):
             raise InputError(problem)
         for problem in joint_problems(self.joints, self.body) if self.joints else ():
@@ -461,8 +463,23 @@ class RobotSpec:
 
     @functools.cached_property
     def controller(self) -> Navigator:
-        """The navigator that decides, behind the safety layer of the robot."""
-        return self.navigator if self.safety is None else self.safety.around(self.navigator)
+        """The navigator that decides, with the paths of its files, behind the safety layer of the robot."""
+        return self._with_files if self.safety is None else self.safety.around(self._with_files)
+
+    @functools.cached_property
+    def _with_files(self) -> Navigator:
+        """The navigator with the paths of its files, which have been read."""
+        navigator = self.navigator
+        for name in navigator.file_parameters:
+            value = getattr(navigator, name)
+            try:
+                if value:
+                    path = resolve_file(str(value), self.folder, self.trust)
+                    navigator = dataclasses.replace(navigator, **{name: str(path)})
+                    navigator.check_files()
+            except InputError as error:
+                raise InputError(f"navigator {name}={quote_value(value)}: {error}") from None
+        return navigator
 
     @property
     def mirror(self) -> RobotPose | None:
@@ -535,11 +552,14 @@ class RobotSpec:
         return self.x, self.y
 
     def files(self) -> tuple[Path, ...]:
-        """Return the files of the robot folder; none for a built-in robot."""
+        """Return the files of the navigator and of the robot folder; a built-in robot has none."""
+        navigator = self._with_files
+        named = (getattr(navigator, name) for name in navigator.file_parameters)
+        own = tuple(Path(file) for file in named if file)
         place = robot_folder_of(self.type, self.folder, self.trust) if self.type else None
         if place is None:
-            return ()
-        return tuple(sorted(path for path in place.rglob("*") if path.is_file()))[:MOST_FILES]
+            return own
+        return own + tuple(sorted(path for path in place.rglob("*") if path.is_file()))[:MOST_FILES]
 
     @property
     def _kind(self) -> world.Robot:

@@ -198,7 +198,8 @@ class AttentionPolicyNavigator(LearnedNavigator):
         speed: largest speed [m/s], limited by the drive.
         horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
         margin: clearance to people that is kept for this time [m].
-        file: file of weights from ``examples/train_navigator.py`` (default: the weights of the package).
+        file: file of weights from ``examples/train_navigator.py``, in a trial relative to its folder (default: the
+            weights of the package).
 
     Sources: attention, Chen et al. 2019, doi:10.1109/ICRA.2019.8794134; proximal policy optimisation, Schulman et al.
     2017, https://arxiv.org/abs/1707.06347. Their value network has no walls; a policy is learned instead of a value.
@@ -220,11 +221,12 @@ class AttentionPolicyNavigator(LearnedNavigator):
         "ICRA",
         "10.1109/ICRA.2019.8794134",
     )
+    network = AttentionWeights
     always_returns = True
 
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         inputs, shares = attention_inputs(batch, asking, self.speed), np.zeros((len(batch), 2))
-        layers: Any = read_layers(AttentionWeights, self.file)
+        layers: Any = read_layers(self.network, self.file)
         apply_attention(asking, inputs.own, inputs.people, inputs.present, inputs.walls, shares, *layers)
         shares[(inputs.present == 0) & ~inputs.walls.any(axis=1)] = (1.0, 0.0)  # towards the waypoint
         return inputs.axis, shares

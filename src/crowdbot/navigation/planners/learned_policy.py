@@ -20,7 +20,7 @@ from crowdbot.navigation.wall_arrays import wall_arrays
 from crowdbot.typing import Bools, Floats
 
 from .policy_kernels import OWN_VALUES, PERSON_VALUES, apply_network, avoid_contacts, limit_velocities, write_inputs
-from .policy_weights import PolicyWeights, read_layers
+from .policy_weights import NetworkWeights, PolicyWeights, read_layers
 
 MOST_PEOPLE = 20
 """Number of nearest people that the policy knows."""
@@ -125,11 +125,16 @@ class LearnedNavigator(Navigator):
         speed: largest speed [m/s], limited by the drive.
         horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
         margin: clearance to people that is kept for this time [m].
-        file: file of weights from ``examples/train_navigator.py`` (default: the weights of the package).
+        file: file of weights from ``examples/train_navigator.py``, in a trial relative to its folder (default: the
+            weights of the package).
 
     Raises:
         InputError: a number is out of its range.
     """
+
+    file_parameters = ("file",)
+    network: ClassVar[type[NetworkWeights]]
+    """Layers of the network."""
 
     speed: float = 1.0
     horizon: float = 1.0
@@ -141,6 +146,9 @@ class LearnedNavigator(Navigator):
         check_number(kind, "speed", self.speed, "m/s", exclusive_min=0.0)
         check_number(kind, "horizon", self.horizon, "s", min=0.0)
         check_number(kind, "margin", self.margin, "m", exclusive_min=0.0)
+
+    def check_files(self) -> None:
+        read_layers(self.network, self.file)
 
     @abstractmethod
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
@@ -184,7 +192,8 @@ class PolicyNavigator(LearnedNavigator):
         speed: largest speed [m/s], limited by the drive.
         horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
         margin: clearance to people that is kept for this time [m].
-        file: file of weights from ``examples/train_navigator.py`` (default: the weights of the package).
+        file: file of weights from ``examples/train_navigator.py``, in a trial relative to its folder (default: the
+            weights of the package).
 
     Sources: proximal policy optimisation, Schulman et al. 2017, https://arxiv.org/abs/1707.06347; inputs in the goal
     frame, Chen et al. 2019, doi:10.1109/ICRA.2019.8794134.
@@ -202,11 +211,12 @@ class PolicyNavigator(LearnedNavigator):
     paper: ClassVar[Paper] = Paper(
         "Schulman et al.", 2017, "Proximal policy optimization algorithms", "arXiv", "10.48550/arXiv.1707.06347"
     )
+    network = PolicyWeights
     always_returns = True
 
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         inputs, shares = policy_inputs(batch, MOST_PEOPLE, asking, self.speed), np.zeros((len(batch), 2))
-        layers: Any = read_layers(PolicyWeights, self.file)
+        layers: Any = read_layers(self.network, self.file)
         apply_network(asking, inputs.own, inputs.people, inputs.present, shares, *layers)
         shares[inputs.present == 0] = (1.0, 0.0)  # towards the waypoint
         return inputs.axis, shares

@@ -427,7 +427,8 @@ class RecurrentPolicyNavigator(LearnedNavigator):
         speed: largest speed [m/s], limited by the drive.
         horizon: time for which people are expected to walk straight [s]; 0: the velocity of the network is not changed.
         margin: clearance to people that is kept for this time [m].
-        file: file of weights from ``examples/train_navigator.py`` (default: the weights of the package).
+        file: file of weights from ``examples/train_navigator.py``, in a trial relative to its folder (default: the
+            weights of the package).
 
     Sources: structure, Liu et al. 2021, doi:10.1109/ICRA48506.2021.9561595; gated recurrent unit, Cho et al. 2014,
     doi:10.3115/v1/D14-1179; proximal policy optimisation, Schulman et al. 2017, https://arxiv.org/abs/1707.06347.
@@ -451,6 +452,7 @@ class RecurrentPolicyNavigator(LearnedNavigator):
         "ICRA",
         "10.1109/ICRA48506.2021.9561595",
     )
+    network = RecurrentWeights
     always_returns = True
 
     def begin(self, observation: Observation) -> TrackBatch:
@@ -466,7 +468,7 @@ class RecurrentPolicyNavigator(LearnedNavigator):
 
     def shares(self, batch: ObservationBatch, asking: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         inputs, shares = recurrent_inputs(batch, asking, self.speed), np.zeros((len(batch), 2))
-        layers: Any = read_layers(RecurrentWeights, self.file)
+        layers: Any = read_layers(self.network, self.file)
         apply_recurrent(
             asking, inputs.own, inputs.windows, inputs.steps, inputs.bodies, inputs.present, inputs.walls, shares,
             *layers,

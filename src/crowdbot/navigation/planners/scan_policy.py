@@ -186,7 +186,8 @@ class ScanPolicyNavigator(Navigator):
             they are [s]: a near velocity, or for a drive that cannot move sideways a near twist, without contact
             replaces it; 0: the drive follows the network.
         margin: clearance that is kept to them for this time [m].
-        file: file of weights from ``examples/train_scan_navigator.py`` (default: the weights of the package).
+        file: file of weights from ``examples/train_scan_navigator.py``, in a trial relative to its folder (default:
+            the weights of the package).
 
     Sources: Long et al. 2018, doi:10.1109/ICRA.2018.8461113; Fan et al. 2020, doi:10.1177/0278364920916531.
 
@@ -204,6 +205,8 @@ class ScanPolicyNavigator(Navigator):
         "ICRA",
         "10.1109/ICRA.2018.8461113",
     )
+    network: ClassVar[type[NetworkWeights]] = ScanPolicyWeights
+    file_parameters = ("file",)
     needs_scan: ClassVar[bool] = True
     always_returns = True
 
@@ -216,6 +219,9 @@ class ScanPolicyNavigator(Navigator):
         check_number("ScanPolicyNavigator", "speed", self.speed, "m/s", exclusive_min=0.0)
         check_number("ScanPolicyNavigator", "horizon", self.horizon, "s", min=0.0)
         check_number("ScanPolicyNavigator", "margin", self.margin, "m", exclusive_min=0.0)
+
+    def check_files(self) -> None:
+        read_layers(self.network, self.file)
 
     def begin(self, observation: Observation) -> Memory:
         return ()
@@ -235,7 +241,7 @@ class ScanPolicyNavigator(Navigator):
             pose, goal, waypoint, np.array(observation.twist), observation.radius, limits, memory, observation.time
         )
         velocity, one = np.zeros((1, 2)), np.ones(1, np.bool_)
-        layers: Any = read_layers(ScanPolicyWeights, self.file)
+        layers: Any = read_layers(self.network, self.file)
         _apply_network(inputs.own, inputs.sectors, velocity[0], *layers)
         limit_velocities(one, pose[None], goal[None], waypoint[None], inputs.axis[None], np.array(limits[:4]), velocity)
         if self.horizon > 0.0:
