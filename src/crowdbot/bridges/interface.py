@@ -501,6 +501,9 @@ def _scene_outputs(trial: Trial, follows_clock: bool) -> list[OutputTopic]:
         OutputTopic(
             "/crowdbot/reactions", "std_msgs/msg/String", "", 0.0, STATE, about="reactions to robots", truth=True
         ),
+        OutputTopic(
+            "/crowdbot/gestures", "std_msgs/msg/String", "", 0.0, STATE, about="gestures to robots", truth=True
+        ),
     ]
     return [dataclasses.replace(row, truth=row.name not in SHARED) for row in rows]
 

@@ -20,6 +20,9 @@ from .simulation_interfaces import RESULT_OPERATION_FAILED
 from .simulation_services import answer_call, result
 from .transport import Transport
 
+SCENE_TOPICS = ("/people", "/crowdbot/reactions", "/crowdbot/gestures")
+"""Topics of the scene, which are sent when it is due only."""
+
 
 def steered_trial(trial: Trial, timeout: float = 0.5) -> Trial:
     """Return the trial with robots that other programs drive.
@@ -127,7 +130,7 @@ class BridgePort:
         frame = simulation.record(0, due=True, collisions=False)
 
         def wants(topic: str) -> bool:
-            if topic in self._skipped or (not due and topic in ("/people", "/crowdbot/reactions")):
+            if topic in self._skipped or (not due and topic in SCENE_TOPICS):
                 return False
             return is_latched(topic) or self._is_wanted(topic)
 

@@ -25,6 +25,7 @@ from .errors import (
     import_optional,
     nearest_name,
 )
+from .gestures import GESTURES
 from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities, strict_xml
 from .model_parameter import (
     Bounds,
@@ -86,6 +87,7 @@ __getattr__, __dir__, _ = lazy_exports(__name__)
 
 __all__ = [
     "CHUNK",
+    "GESTURES",
     "HASH_BLOCK",
     "MOST_PARTS",
     "MOST_TRIANGLES",

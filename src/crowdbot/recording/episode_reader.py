@@ -126,6 +126,11 @@ class RecordedEpisode:
         return None if self.rows.reactions is None else self.rows.dense(self.rows.reactions)
 
     @functools.cached_property
+    def gestures(self) -> NDArray[np.int8] | None:
+        """Codes of gestures ``[T, A]``, see :class:`Episode`, likewise; None if nobody can make one."""
+        return None if self.rows.gestures is None else self.rows.dense(self.rows.gestures)
+
+    @functools.cached_property
     def ids(self) -> NDArray[np.int64]:
         """Ids ``[A]``: 0 to A - 1."""
         return self.rows.every
@@ -395,7 +400,8 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
         machines.append([_robot_row(places[r], robot, moment.robots[name]) for r, robot, name in present])
         for r, _, name in present:  # others are added later, or removed
             commands[k, r] = moment.commands[name]
-    rows = RecordedRows.of([people for _, people in due], machines, count, [moment.reactions for moment, _ in due])
+    reactions, gestures = ([getattr(moment, name) for moment, _ in due] for name in ("reactions", "gestures"))
+    rows = RecordedRows.of([people for _, people in due], machines, count, reactions, gestures)
     scans, readings = _places(moment.scans for moment in found), _places(moment.readings for moment in found)
     if "added_robots" in known:
         known = known | {"robots": json.dumps(robots)}

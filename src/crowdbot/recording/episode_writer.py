@@ -43,8 +43,9 @@ class Recorder:
     ``/<robot>/odom``, ``/<robot>/ground_truth/odom``, ``/<robot>/cmd_vel``, ``/<robot>/joint_states``,
     ``/<robot>/robot_description`` (latched) and ``/<robot>/<sensor>`` (message types of sensors:
     :mod:`crowdbot.messages`), ``/crowdbot/contacts`` for contacts of a robot with people or walls, ``/crowdbot/orders``
-    for orders from outside, and ``/crowdbot/reactions`` if people can react to robots; in the physics world
-    ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are simulated time.
+    for orders from outside, ``/crowdbot/reactions`` if people can react to robots, and ``/crowdbot/gestures`` if they
+    can make gestures; in the physics world ``/crowdbot/forces`` and ``/crowdbot/collisions`` too. All time stamps are
+    simulated time.
 
     The file is created, or replaced, at the first recorded step and grows every half second of simulated time. Use it
     as a context manager: without :meth:`complete`, the file is left incomplete; before the first step, no file and no

@@ -35,6 +35,8 @@ GROUND_TRUTH = "/ground_truth/odom"
 """Topic of the true pose of a robot, after its name."""
 REACTION_TOPIC = "/crowdbot/reactions"
 """Topic of the reactions to robots that are in force, as JSON: ids of people by kind of reaction."""
+GESTURE_TOPIC = "/crowdbot/gestures"
+"""Topic of the gestures of people to robots, as JSON: ids of people by gesture."""
 
 
 def versions() -> dict[str, str]:

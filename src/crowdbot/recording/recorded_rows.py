@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import GESTURES, EpisodeError
 from crowdbot.metrics import AgentLog, AgentStates
 from crowdbot.typing import Floats
 from crowdbot.world import REACTIONS
@@ -45,6 +45,7 @@ class RecordedRows:
         heading, radius: ``[M]`` [rad], [m].
         count: number A of ids; all are below it.
         reactions: codes of the reactions to robots ``[M]``; None if nobody can react.
+        gestures: codes of the gestures ``[M]``, see :data:`crowdbot.core.GESTURES`; None if nobody can make one.
 
     >>> here = AgentStates(0.0, np.array([4]), np.ones((1, 2)), np.zeros((1, 2)), np.zeros(1), np.array([0.3]))
     >>> rows = RecordedRows.of([here, here], [[RobotRow(2, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0)], []], 5)
@@ -63,6 +64,7 @@ class RecordedRows:
     radius: Floats
     count: int
     reactions: NDArray[np.int8] | None = None
+    gestures: NDArray[np.int8] | None = None
 
     @classmethod
     def of(
@@ -71,6 +73,7 @@ class RecordedRows:
         robots: Sequence[Sequence[RobotRow]],
         count: int,
         reactions: Sequence[Mapping[str, Sequence[int]] | None] = (),
+        gestures: Sequence[Mapping[str, Sequence[int]] | None] = (),
     ) -> RecordedRows:
         """Return the rows of people and robots at T times.
 
@@ -79,6 +82,7 @@ class RecordedRows:
             count: number A of ids.
             reactions: ids of the people who react to robots by kind of reaction, at each time; None or nothing if
                 nobody can react.
+            gestures: ids of the people who make a gesture by its name, likewise.
 
         Raises:
             ValueError: an id is below 0, not below ``count``, or twice at one time.
@@ -97,7 +101,6 @@ class RecordedRows:
         if len(twice):
             raise ValueError(f"two agents have the id {int(ids[twice[0]])} at one time")
         starts = np.searchsorted(step, np.arange(len(people) + 1))
-        known = bool(reactions) and all(one is not None for one in reactions)
         return cls(
             np.array([states.time for states in people], dtype=np.float64),
             starts,
@@ -107,7 +110,8 @@ class RecordedRows:
             np.concatenate([*(states.heading for states in people), machines[:, 4]])[order],
             np.concatenate([*(states.radius for states in people), machines[:, 1]])[order],
             count,
-            _codes(starts, ids, reactions) if known else None,
+            _codes(starts, ids, reactions, REACTIONS),
+            _codes(starts, ids, gestures, GESTURES),
         )
 
     def at(self, k: int) -> slice:
@@ -202,12 +206,17 @@ def _steps(sizes: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
     return np.repeat(np.arange(len(sizes)), np.asarray(sizes, dtype=np.int64))
 
 
-def _codes(starts: NDArray[np.int64], ids: NDArray[np.int64], reactions: Sequence[Any]) -> NDArray[np.int8]:
+def _codes(
+    starts: NDArray[np.int64], ids: NDArray[np.int64], rows: Sequence[Any], names: Sequence[str]
+) -> NDArray[np.int8] | None:
+    """Return the index in ``names`` of each row, from the ids by name at each time; None if they are not known."""
+    if not rows or any(row is None for row in rows):
+        return None
     codes = np.zeros(len(ids), dtype=np.int8)
-    for k, kinds in enumerate(reactions):
+    for k, kinds in enumerate(rows):
         here, found = ids[starts[k] : starts[k + 1]], codes[starts[k] : starts[k + 1]]
         for kind, people in kinds.items():
             if not np.isin(people, here).all():
                 raise ValueError(f"somebody who is absent reacts: {kind!r} of {people}")
-            found[np.isin(here, people)] = REACTIONS.index(kind)
+            found[np.isin(here, people)] = names.index(kind)
     return codes

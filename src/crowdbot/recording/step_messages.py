@@ -25,9 +25,9 @@ from crowdbot.messages import MARKERS as MARKER_KIND
 from crowdbot.simulation import WALL, Simulation, StepRecord, write_order
 from crowdbot.trials import Stage, Trial
 from crowdbot.typing import Bools, Floats
-from crowdbot.world import people_by_reaction
+from crowdbot.world import people_by_gesture, people_by_reaction
 
-from .metadata import CONTACTS, ORDERS, REACTION_TOPIC, as_json
+from .metadata import CONTACTS, GESTURE_TOPIC, ORDERS, REACTION_TOPIC, as_json
 from .robot_messages import STATIC, RobotMessages
 
 MAP_TOPIC = "/map"
@@ -241,6 +241,8 @@ class StepMessages:
             yield self._message(FALL_POSES, fall_pose_message(make, now, poses), now)
         if wants(REACTION_TOPIC) and (reactions := people_by_reaction(scene, frame.ids)) is not None:
             yield self._message(REACTION_TOPIC, make.text(as_json(reactions)), now)
+        if wants(GESTURE_TOPIC) and (gestures := people_by_gesture(scene, frame.ids)) is not None:
+            yield self._message(GESTURE_TOPIC, make.text(as_json(gestures)), now)
         for topic, message in self.robots.scene(frame):
             if wants(topic):
                 yield self._message(topic, message, now)

@@ -38,7 +38,7 @@ from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
-from .metadata import CONTACTS, DIGEST, GROUND_TRUTH, ORDERS, REACTION_TOPIC, heading_of
+from .metadata import CONTACTS, DIGEST, GESTURE_TOPIC, GROUND_TRUTH, ORDERS, REACTION_TOPIC, heading_of
 
 T = TypeVar("T")
 R = TypeVar("R", bound=Reading)
@@ -198,6 +198,7 @@ class RecordedStep:
         contacts: contacts of this step.
         orders: orders from outside in this step, as JSON.
         reactions: ids of the people who react to robots, by kind of reaction; None if nobody can.
+        gestures: ids of the people who make a gesture, by its name; None if nobody can.
         digest: digest of the episode as if it was interrupted here.
     """
 
@@ -216,6 +217,7 @@ class RecordedStep:
     contacts: list[RecordedContact] = field(default_factory=list)
     orders: list[str] = field(default_factory=list)
     reactions: dict[str, list[int]] | None = None
+    gestures: dict[str, list[int]] | None = None
     digest: str = ""
 
     @property
@@ -354,6 +356,8 @@ def _take(moment: RecordedStep, poses: Poses, topic: str, message: Any) -> None:
         moment.orders.append(str(message.data))
     elif topic == REACTION_TOPIC:
         moment.reactions = json.loads(message.data)
+    elif topic == GESTURE_TOPIC:
+        moment.gestures = json.loads(message.data)
     elif topic == CONTACTS:
         moment.contacts = [RecordedContact(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
     elif topic == FORCES:

@@ -74,6 +74,8 @@ class Episode:
         falls: falls of people in the physics world, ordered by end.
         reactions: ``[T, A]`` code of the reaction of each person to a robot, an index in
             :data:`crowdbot.world.REACTIONS`, 0 for none; None if nobody can react.
+        gestures: ``[T, A]`` code of the gesture of each person to a robot, an index in
+            :data:`crowdbot.core.GESTURES`, 0 for none; None if nobody can make one.
         decision_times: compute times [s] of the decisions by robot, of those with a deadline or with a navigator in
             another process, without the first one; not recorded.
 
@@ -108,6 +110,7 @@ class Episode:
     collisions: tuple[BodyContactEvent, ...] = ()
     falls: tuple[Fall, ...] = ()
     reactions: NDArray[np.int8] | None = None
+    gestures: NDArray[np.int8] | None = None
     decision_times: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property

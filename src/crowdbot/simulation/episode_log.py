@@ -14,7 +14,7 @@ from crowdbot.metrics import AgentLog, NavigationMetrics
 from crowdbot.sensors import Reading
 from crowdbot.trials import Trial
 from crowdbot.typing import Floats, Ints
-from crowdbot.world import BodyContactEvent, ContactForce, reaction_codes
+from crowdbot.world import BodyContactEvent, ContactForce, gesture_codes, reaction_codes
 
 from .episode import Episode
 from .episode_digest import EpisodeDigest, add_batch
@@ -43,6 +43,7 @@ class _Frame(NamedTuple):
     robots: tuple[int, ...]
     goals: Floats
     reactions: NDArray[np.int8] | None
+    gestures: NDArray[np.int8] | None
 
 
 class EpisodeLog(EpisodeStatistics):
@@ -73,7 +74,7 @@ class EpisodeLog(EpisodeStatistics):
             parts = (scene.active, scene.heading, scene.radius, scene.position, scene.velocity)
             arrays = [frame.ids, *(part[0] for part in parts), frame.twists, frame.commands]
             agents = [int(np.flatnonzero(frame.ids == robot)[0]) for robot in frame.robot_ids]
-            codes = None if (found := reaction_codes(scene)) is None else found[0]
+            codes = [None if rows is None else rows[0] for rows in (reaction_codes(scene), gesture_codes(scene))]
             self._keep_frame(frame.nanoseconds, arrays, frame.robot_ids, scene.goal[0, agents], codes)
 
     def keep_row(self, batch: StepBatch, row: int) -> None:
@@ -87,7 +88,7 @@ class EpisodeLog(EpisodeStatistics):
             parts = (batch.ids, batch.active, batch.heading, batch.radius, batch.position, batch.velocity)
             arrays = [part[row, :slots] for part in parts]
             whole = [*arrays, batch.twists[row], batch.commands[row]]
-            codes = None if batch.reactions is None else batch.reactions[row, :slots]
+            codes = [None if rows is None else rows[row, :slots] for rows in (batch.reactions, batch.gestures)]
             self._keep_frame(nanoseconds, whole, self.robot_ids, batch.goals[row], codes)
 
     def metrics(self, outcome: str) -> dict[str, float]:
@@ -158,13 +159,14 @@ class EpisodeLog(EpisodeStatistics):
             tuple(self.forces),
             tuple(self.collisions),
             tuple(self.falls),
-            self._reactions(),
+            self._codes("reactions"),
+            self._codes("gestures"),
             dict(decision_times or {}),
         )
 
-    def _reactions(self) -> NDArray[np.int8] | None:
-        """Return the codes of reactions to robots ``[T, A]``, None if nobody can react."""
-        rows = [frame.reactions for frame in self._frames if frame.reactions is not None]
+    def _codes(self, name: str) -> NDArray[np.int8] | None:
+        """Return the codes of reactions to robots or of gestures ``[T, A]``, None if there can be none."""
+        rows = [codes for frame in self._frames if (codes := getattr(frame, name)) is not None]
         if not rows or len(rows) < len(self._frames):
             return None
         return _by_person(rows, [frame.ids for frame in self._frames], self.agents)
@@ -193,11 +195,11 @@ class EpisodeLog(EpisodeStatistics):
         arrays: Sequence[NDArray[Any]],
         robots: tuple[int, ...],
         goals: Floats,
-        codes: NDArray[np.int8] | None,
+        codes: Sequence[NDArray[np.int8] | None],
     ) -> None:
         self.end = nanoseconds / 1e9
         self.begin = self.end if math.isnan(self.begin) else self.begin
-        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots, goals, codes]))
+        self._frames.append(_Frame._make([nanoseconds, *arrays, frozenset(self._touching), robots, goals, *codes]))
         self._touching = set()
 
     def _arrays(self) -> dict[str, NDArray[Any]]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.trials import Mount, RobotSpec
 from crowdbot.typing import Bools, Floats, Ints
-from crowdbot.world import reaction_codes
+from crowdbot.world import gesture_codes, reaction_codes
 
 from .mounted_sensor import SensorReadings
 from .step_record import RobotContact
@@ -48,6 +48,7 @@ class StepBatch:
         readings: readings of this step, sensor by sensor.
         touches, forces, collisions, falls, orders: as in :class:`StepRecord`, by row; rows without are missing.
         reactions: ``[N, A]`` codes of the reactions to robots, see :data:`crowdbot.world.REACTIONS`; None without.
+        gestures: ``[N, A]`` codes of the gestures, see :data:`crowdbot.core.GESTURES`; None without.
     """
 
     environments: Ints
@@ -71,6 +72,7 @@ class StepBatch:
     falls: Mapping[int, tuple[Fall, ...]] = field(default_factory=dict)
     orders: Mapping[int, tuple[Order, ...]] = field(default_factory=dict)
     reactions: NDArray[np.int8] | None = None
+    gestures: NDArray[np.int8] | None = None
 
     @classmethod
     def of(
@@ -138,7 +140,7 @@ class StepBatch:
             collisions,
             falls,
             {n: found for n, e in enumerate(index.tolist()) if (found := (orders or {}).get(e))},
-            None if (codes := reaction_codes(scene)) is None else codes[index],
+            *(None if codes is None else codes[index] for codes in (reaction_codes(scene), gesture_codes(scene))),
         )
 
     def plain_ids(self) -> Bools:

@@ -93,9 +93,12 @@ if TYPE_CHECKING:
     from .physics.stage import Tree as Tree
     from .physics.world import PhysicsWorld as PhysicsWorld
     from .planar import PlanarWorld as PlanarWorld
+    from .reactions.reaction import ALWAYS_IN_FORCE as ALWAYS_IN_FORCE
     from .reactions.reaction import REACTIONS as REACTIONS
     from .reactions.reaction import RobotReaction as RobotReaction
     from .reactions.robot_reactions import RobotReactions as RobotReactions
+    from .reactions.robot_reactions import gesture_codes as gesture_codes
+    from .reactions.robot_reactions import people_by_gesture as people_by_gesture
     from .reactions.robot_reactions import people_by_reaction as people_by_reaction
     from .reactions.robot_reactions import reaction_codes as reaction_codes
     from .rendering.camera import CameraImages as CameraImages

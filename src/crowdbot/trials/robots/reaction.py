@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core import InputError
+from crowdbot.core import GESTURES, InputError
 from crowdbot.core.fields import attribute, check
-from crowdbot.world import REACTIONS, RobotReaction, RobotReactions
+from crowdbot.world import ALWAYS_IN_FORCE, REACTIONS, RobotReaction, RobotReactions
 
 from .behavior import BehaviorSpec
 
@@ -42,8 +42,9 @@ class ReactionSpec:
     )
     once: bool = attribute(False, about="whether a person reacts only once")
     speed: float | None = attribute(
-        None, about="speed as a multiple of the preferred speed (default: by type)", min=0.0, max=1.3
-    )
+        None, about="speed as a multiple of the preferred speed (default: by type, 0 with the gesture proceed)",
+        min=0.0, max=1.3,
+    )  # fmt: skip
     gap: float | None = attribute(
         None, about="clearance to the robot, or to its lane, that people aim at (default: by type)", unit="m",
         min=0.0, max=100.0,
@@ -58,12 +59,26 @@ class ReactionSpec:
         math.pi, about="full angle around the heading in which robots are seen", unit="rad", exclusive_min=0.0,
         max=2.0 * math.pi,
     )  # fmt: skip
+    gesture: str = attribute(
+        "none", about="gesture of a person who looks: wait tells the robot to stand, proceed to go first",
+        choices=GESTURES,
+    )  # fmt: skip
+    begin: float = attribute(0.0, about="time from which the reaction can begin", unit="s", min=0.0, max=86_400.0)
+    end: float = attribute(
+        math.inf, about="time until which the reaction can begin", unit="s", exclusive_min=0.0, max=86_400.0
+    )
 
     def __post_init__(self) -> None:
         check(self)
         for name in ("repulsion", "range"):
             if self.type != "scared" and getattr(self, name) is not None:
                 raise InputError(f'{name} acts with type="scared" only, not with type="{self.type}"')
+        if self.gesture != "none" and self.type != "look":
+            raise InputError(f'gesture="{self.gesture}" acts with type="look" only, not with type="{self.type}"')
+        if self.begin >= self.end:
+            raise InputError(f'begin="{self.begin:g}" must be below end="{self.end:g}"')
+        if self.type in ALWAYS_IN_FORCE and (self.begin, self.end) != (0.0, math.inf):
+            raise InputError(f'begin and end have no effect with type="{self.type}", which is always in force')
         if self.once and self.pause is not None:
             raise InputError("pause has no effect with once")
 
@@ -71,7 +86,7 @@ class ReactionSpec:
         """Return the reaction of a world."""
         pause = math.inf if self.once else self.pause
         numbers = (self.distance, self.duration, pause, self.speed, self.gap, self.repulsion, self.range)
-        return RobotReaction(self.type, *numbers, self.field_of_view)
+        return RobotReaction(self.type, *numbers, self.field_of_view, self.gesture, self.begin, self.end)
 
 
 def check_shares(reactions: Sequence[ReactionSpec], behaviors: Sequence[BehaviorSpec] = ()) -> None:

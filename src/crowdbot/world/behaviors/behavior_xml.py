@@ -7,7 +7,7 @@ import posixpath
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from crowdbot.core import Element, InputError, did_you_mean, parse_number, parse_xml
 from crowdbot.world.reactions.reaction import RobotReaction
@@ -306,10 +306,11 @@ class _Reader:
         row = LEAVES[kind]
         if not row.reaction:
             return None
-        values: dict[str, float] = {} if row.speed is None else {"speed": row.speed}
+        values: dict[str, Any] = {} if row.speed is None else {"speed": row.speed}
         for word in row.parameters:
             if word in attributes:
-                values[word] = self._constant(element, place, word, attributes.pop(word))
+                text = attributes.pop(word)
+                values[word] = text.strip() if word == "gesture" else self._constant(element, place, word, text)
         try:
             return RobotReaction(row.reaction, **values)
         except InputError as error:

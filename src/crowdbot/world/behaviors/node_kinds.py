@@ -88,7 +88,7 @@ CONDITIONS = {
 }
 ACTIONS = {
     "RegularNav": NodeKind("walk to the goal"),
-    "SurprisedNav": NodeKind("stop and turn to the robot", {}, "look", (), 0.0),
+    "SurprisedNav": NodeKind("stop and turn to the robot", {}, "look", ("gesture",), 0.0),
     "CuriousNav": NodeKind("walk to the robot, stop at `gap` and look at it", {}, "curious", ("gap", "speed")),
     "ScaredNav": NodeKind(
         "keep away from the robot", {}, "scared", ("speed", "repulsion", "range")
@@ -96,7 +96,7 @@ ACTIONS = {
     "ThreateningNav": NodeKind("walk in front of the robot and stay there", {}, "block", ("gap", "speed")),
     "FollowRobot": NodeKind("walk behind the robot", {}, "follow", ("gap", "speed")),
     "GiveWayNav": NodeKind("step out of the lane of the robot", {}, "give-way", ("gap", "speed")),
-    "LookAtRobot": NodeKind("walk on and turn to the robot", {}, "look", ("speed",)),
+    "LookAtRobot": NodeKind("walk on and turn to the robot", {}, "look", ("speed", "gesture")),
     "IgnoreRobot": NodeKind("walk to the goal without seeing robots", {}, "ignore"),
     "ImpassiveNav": NodeKind("walk to the goal; robots are obstacles that stand still", {}, "impassive"),
     "UpdateGoal": NodeKind("take the next stop of the journey; fails without one"),

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from crowdbot.core import InputError, did_you_mean
+from crowdbot.core import GESTURES, InputError, did_you_mean
 
 REACTIONS = ("regular", "ignore", "impassive", "curious", "scared", "block", "follow", "give-way", "look")
 """Kinds of reactions. The index of a kind is its code in recordings; 0 means that no reaction is in force."""
@@ -59,7 +59,9 @@ class RobotReaction:
     - ``block``: the person walks in front of the robot and stays there.
     - ``follow``: the person walks behind the robot.
     - ``give-way``: the person steps out of the lane of a moving robot, or stops before it.
-    - ``look``: the person walks on at another speed, or stops with speed 0, and turns towards the robot.
+    - ``look``: the person walks on at another speed, or stops with speed 0, and turns towards the robot. They can make
+      a gesture meanwhile: ``wait`` tells the robot to stand, ``proceed`` to go first, and the person stands. The
+      reaction then ends, too, when the one who goes first has passed the other.
 
     Fields:
         kind: one of :data:`REACTIONS`.
@@ -71,8 +73,10 @@ class RobotReaction:
         repulsion: speed away from a robot at contact [m/s], for ``scared``.
         range: clearance at which the repulsion is 1/e of that [m], for ``scared``.
         field_of_view: full angle around the heading in which a robot is seen [rad].
+        gesture: one of :data:`crowdbot.core.GESTURES`, for ``look``.
+        begin, end: simulated time from which, and until which, the reaction can begin [s].
 
-    Parameters that are None have the values of :data:`REACTION_DEFAULTS`.
+    Parameters that are None have the values of :data:`REACTION_DEFAULTS`; with the gesture ``proceed``, the speed is 0.
 
     Raises:
         InputError: the kind is unknown, or a value is not allowed.
@@ -90,6 +94,9 @@ class RobotReaction:
     repulsion: float | None = None
     range: float | None = None
     field_of_view: float = math.pi
+    gesture: str = "none"
+    begin: float = 0.0
+    end: float = math.inf
 
     def __post_init__(self) -> None:
         if self.kind not in REACTIONS:
@@ -97,14 +104,29 @@ class RobotReaction:
                 f"RobotReaction: kind = {self.kind!r}{did_you_mean(str(self.kind), REACTIONS)} must be one of "
                 + ", ".join(REACTIONS)
             )
+        if self.gesture not in GESTURES:
+            raise InputError(
+                f"RobotReaction: gesture = {self.gesture!r}{did_you_mean(str(self.gesture), GESTURES)} must be one of "
+                + ", ".join(GESTURES)
+            )
+        if self.gesture != "none" and self.kind != "look":
+            raise InputError(f"RobotReaction: a gesture needs the kind 'look', not {self.kind!r}")
+        if self.gesture == "proceed" and self.speed is None:
+            object.__setattr__(self, "speed", 0.0)
         for name, value in REACTION_DEFAULTS[self.kind]._asdict().items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, value)
-        for field in dataclasses.fields(self)[1:]:
+        for field in dataclasses.fields(self):
+            if field.name in ("kind", "gesture"):
+                continue
             value = float(getattr(self, field.name))
             least, most = LIMITS.get(field.name, (0.0, math.inf))
-            if not least <= value <= most or (math.isinf(value) and field.name not in ("duration", "pause")):
+            if not least <= value <= most or (math.isinf(value) and field.name not in ("duration", "pause", "end")):
                 raise InputError(f"RobotReaction: {field.name} = {value:g} must be from {least:g} to {most:g}")
+        if self.begin >= self.end:
+            raise InputError(f"RobotReaction: begin = {self.begin:g} must be below end = {self.end:g}")
+        if self.kind in ALWAYS_IN_FORCE and (self.begin, self.end) != (0.0, math.inf):
+            raise InputError(f"RobotReaction: begin and end have no effect with the kind {self.kind!r}")
 
     @property
     def code(self) -> int:
@@ -112,4 +134,6 @@ class RobotReaction:
         return REACTIONS.index(self.kind)
 
 
+ALWAYS_IN_FORCE = ("regular", "ignore", "impassive")
+"""Kinds that are in force all the time, and do not begin or end."""
 LIMITS = {"speed": (0.0, 1.3), "range": (0.01, 100.0), "field_of_view": (0.0, 2.0 * math.pi + 1e-9)}

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, wrap_angle
+from crowdbot.core import GESTURES, InputError, Scene, wrap_angle
 from crowdbot.typing import Bools, Floats
 from crowdbot.world.behaviors.behavior_choices import REACT, STAND, BehaviorChoices
 from crowdbot.world.behaviors.behavior_tree import PERSON, STEP, BehaviorTree
@@ -21,7 +21,7 @@ from crowdbot.world.crowd.people_flow import PeopleFlow
 from crowdbot.world.crowd.person_random import uniform
 
 from .reaction import REACTIONS, RobotReaction
-from .reaction_kernel import choose_motion, update_states
+from .reaction_kernel import SLOW, choose_motion, update_states
 
 Step = Callable[[Scene, float], Scene]
 
@@ -34,6 +34,9 @@ BEHAVIOR, BEHAVIOR_STATE = "behavior", "behavior_state"
 """Names in the memory of a scene with behaviour trees. ``[E, A]``: 1 + the index of the tree of a person, 0 for none.
 ``[E, A, S]``: state of the tree, see :meth:`BehaviorTree.begin`.
 """
+WAIT = GESTURES.index("wait")
+GESTURE = "gesture"
+"""Name in the memory of a scene in which people can make gestures. ``[E, A]``: index in :data:`GESTURES`."""
 AHEAD = 2.0
 """Time [s] that a goal lies ahead of a person who reacts."""
 STILL = 0.2
@@ -128,6 +131,18 @@ class RobotReactions:
         codes = np.array([reaction.code for reaction in self.reactions], dtype=np.int64)
         return codes, np.array(rows, dtype=np.float64).reshape(-1, 8)
 
+    @functools.cached_property
+    def _windows(self) -> Floats | None:
+        """Times ``[K, 2]`` [s] between which each reaction can begin; None if all can at any time."""
+        rows = np.array([(reaction.begin, reaction.end) for reaction in self.reactions]).reshape(-1, 2)
+        return rows if np.any(rows != (0.0, math.inf)) else None
+
+    @functools.cached_property
+    def _gestures(self) -> NDArray[np.int64] | None:
+        """Index of the gesture of each reaction ``[K]``; None if there is none."""
+        codes = np.array([GESTURES.index(reaction.gesture) for reaction in self.reactions], dtype=np.int64)
+        return codes if np.any(codes) else None
+
     def start(self, scene: Scene, flow: PeopleFlow) -> Scene:
         """Return the initial scene with the reaction of each initial person in its memory.
 
@@ -145,6 +160,8 @@ class RobotReactions:
             width = max(tree.width for tree in self.trees)
             memory |= {BEHAVIOR: np.zeros(scene.shape), BEHAVIOR_STATE: np.zeros((*scene.shape, width))}
             memory |= {HOLD: np.zeros(scene.shape)}
+        if self._gestures is not None:
+            memory[GESTURE] = np.zeros(scene.shape)
         return self._assign(scene.replace(memory={**scene.memory, **memory}), group, who & ~scene.external, flow)
 
     def apply(
@@ -172,11 +189,13 @@ class RobotReactions:
         ahead = np.stack([np.cos(scene.heading), np.sin(scene.heading)], axis=-1)
         position, active = dense(scene.position, pairs, FLOAT), dense(scene.active, shape, BOOL)
         led = np.zeros(shape, dtype=np.bool_) if not self.trees else memory[BEHAVIOR] > 0.0
+        own = np.where(led, -1.0, rule) if self.trees else rule
         some = update_states(
-            *self._table, np.where(led, -1.0, rule) if self.trees else rule, position, ahead, active,
+            *self._table, self._able_to_begin(own, state, scene.time), position, ahead, active,
             dense(scene.external, shape, BOOL), dense(scene.visible, shape, BOOL), np.array(robots, dtype=np.int64),
             np.ascontiguousarray(scene.walls.segments()), float(dt), state,
         )  # fmt: skip
+        self._end_passed(own, state, before)
         chosen: _Choice | None = None
         if self.trees:
             chosen = self._tick(scene.replace(goal=before.goal), robots, state, flow, dt)
@@ -184,6 +203,9 @@ class RobotReactions:
             some = some or bool(np.any(led & scene.active))
         else:
             memory = {**memory, REACTION_STATE: state}
+        if self._gestures is not None:
+            shown = _of_rule(self._gestures, memory[REACTION], 0)
+            memory = {**memory, GESTURE: np.where(memory[REACTION_STATE][..., 0] > 0.0, shown, 0.0)}
         scene = scene.replace(memory=memory)
         views = self._views(step, robots, state[..., 0])
         if not some:
@@ -200,6 +222,29 @@ class RobotReactions:
         looks = (state[..., 0] == REACTIONS.index("look")) & steers
         follows = _led_by_reaction(views, steers & ~looks)
         return _with_wishes(scene, wish, steers | stands), _turn_after(follows, toward, looks)
+
+    def _able_to_begin(self, rule: Floats, state: Floats, time: float | Floats) -> Floats:
+        """Return the rules ``[E, A]`` in which people whose reaction is not in force and cannot begin now have none."""
+        if self._windows is None:
+            return rule
+        now = np.asarray(time, dtype=np.float64).reshape(-1, 1)
+        begin, end = (_of_rule(self._windows[:, k], rule, 0.0) for k in (0, 1))
+        return np.where((state[..., 0] == 0.0) & ((now < begin) | (now > end)), -1.0, rule)
+
+    def _end_passed(self, rule: Floats, state: Floats, before: Scene) -> None:
+        """End the reactions with a gesture in which the one who goes first has passed the other; modifies ``state``."""
+        if self._gestures is None:
+            return
+        gesture = np.where(state[..., 0] > 0.0, _of_rule(self._gestures, rule, 0), 0)
+        for e, a in np.argwhere(gesture > 0).tolist():
+            robot = int(state[e, a, 2])
+            first, second = (a, robot) if gesture[e, a] == WAIT else (robot, a)
+            moving = before.velocity[e, first]
+            speed = math.hypot(*moving)
+            room = float(before.radius[e, first] + before.radius[e, second])
+            ahead = (before.position[e, second] - before.position[e, first]) @ moving
+            if speed > SLOW and ahead < -room * speed:
+                state[e, a, :2], state[e, a, 3] = (0.0, self._table[1][int(rule[e, a]) - 1, 2]), 0.0
 
     def _tick(self, scene: Scene, robots: Sequence[int], state: Floats, flow: PeopleFlow, dt: float) -> _Choice:
         """Tick the behaviour trees of all people; ``state`` holds the reactions of people without one."""
@@ -317,11 +362,49 @@ def people_by_reaction(scene: Scene, ids: NDArray[np.int64]) -> dict[str, list[i
     >>> people_by_reaction(Scene.of([[0.0, 0.0]]), np.array([7])) is None
     True
     """
-    codes = reaction_codes(scene)
+    return _people_by_code(reaction_codes(scene), REACTIONS, ids)
+
+
+def gesture_codes(scene: Scene) -> NDArray[np.int8] | None:
+    """Return ``[E, A]`` the code of the gesture that each person makes; None in a world without gestures.
+
+    A code is an index in :data:`crowdbot.core.GESTURES`, 0 for none.
+
+    >>> gesture_codes(Scene.of([[0.0, 0.0]])) is None
+    True
+    """
+    codes = scene.memory.get(GESTURE)
     if codes is None:
         return None
-    kinds = sorted({int(code) for code in codes[0].tolist()} - {0})
-    return {REACTIONS[code]: np.sort(ids[codes[0] == code]).tolist() for code in kinds}
+    return np.where(scene.active & (scene.memory[REACTION_STATE][..., 0] > 0.0), codes, 0.0).astype(np.int8)
+
+
+def people_by_gesture(scene: Scene, ids: NDArray[np.int64]) -> dict[str, list[int]] | None:
+    """Return the ids of the people who make a gesture, by its name; None in a world without gestures.
+
+    Args:
+        scene: scene with E = 1.
+        ids: ``[A]`` identities.
+
+    >>> people_by_gesture(Scene.of([[0.0, 0.0]]), np.array([7])) is None
+    True
+    """
+    return _people_by_code(gesture_codes(scene), GESTURES, ids)
+
+
+def _people_by_code(
+    codes: NDArray[np.int8] | None, names: Sequence[str], ids: NDArray[np.int64]
+) -> dict[str, list[int]] | None:
+    if codes is None:
+        return None
+    present = sorted({int(code) for code in codes[0].tolist()} - {0})
+    return {names[code]: np.sort(ids[codes[0] == code]).tolist() for code in present}
+
+
+def _of_rule(values: NDArray[Any], rule: Floats, other: float) -> NDArray[Any]:
+    """Return the value ``[E, A]`` of the reaction of each person, ``other`` for those without one."""
+    index = rule.astype(np.int64) - 1
+    return np.where(index >= 0, values[np.maximum(index, 0)], other)
 
 
 def _view(scene: Scene, kind: str, robots: Sequence[int]) -> Scene:
