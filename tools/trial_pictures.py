@@ -20,7 +20,7 @@ import numpy as np
 from crowdbot.core import kebab_case
 from crowdbot.recording import run
 from crowdbot.simulation import Episode
-from crowdbot.trials import PRESETS, UNSIMULATED, Crowds, Trial, builtin_trials, load_trial, parse_trial, trial_xml
+from crowdbot.trials import PRESETS, Crowds, Trial, builtin_trials, load_trial, parse_trial, trial_xml
 
 SECONDS = 20.0
 PIXELS, DPI = 320, 100
@@ -195,7 +195,6 @@ def scenarios() -> list[str]:
         for name, preset in PRESETS.items()
         for card in preset.cards
     }  # fmt: skip
-    rows |= {name: ["not simulated", "", "", "", "", why] for name, why in UNSIMULATED.items()}
     return [*lines, *(f"| **{name}** | {' | '.join(cells)} |" for name, cells in sorted(rows.items()))]
 
 

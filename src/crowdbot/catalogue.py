@@ -123,12 +123,11 @@ def _trials() -> dict[str, str]:
 
 
 def _scenarios() -> dict[str, str]:
-    """Return the scenarios of Francis et al. 2025 by name: the trial with its options, or why there is none."""
-    from crowdbot.trials import PRESETS, UNSIMULATED
+    """Return the scenarios of Francis et al. 2025 by name: the trial with its options."""
+    from crowdbot.trials import PRESETS
 
     cards = {card.name: (name, card) for name, preset in PRESETS.items() for card in preset.cards}
-    simulated = {key: f"{card.command(name)}: {card.setup}" for key, (name, card) in cards.items()}
-    return dict(sorted({**simulated, **{key: f"not simulated: {why}" for key, why in UNSIMULATED.items()}}.items()))
+    return {key: f"{card.command(name)}: {card.setup}" for key, (name, card) in sorted(cards.items())}
 
 
 def _experiments() -> dict[str, str]:

@@ -159,7 +159,7 @@ def test_the_parameters_of_a_builtin_trial_are_listed(capsys):
     assert main(["list", "scenarios", "--json"]) == 0
     scenarios = json.loads(capsys.readouterr().out)["scenarios"]
     assert scenarios["Narrow Hallway"].startswith("frontal --set width=1.2: ")
-    assert scenarios["Intersection Gesture Wait"].startswith("not simulated: ")
+    assert scenarios["Intersection Gesture Wait"].startswith("intersection-gesture-wait: ")
     assert main(["run", "intersection", "--set", "density=0.5", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] in ("success", "collision", "timeout")
 

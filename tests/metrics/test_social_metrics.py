@@ -413,3 +413,36 @@ def test_groups_intended_paths_and_walls_are_met_by_the_outline(outline, turn, i
     assert found["obstacle_force_on_robot"] == pytest.approx((steps + 1) * 10.0 * np.exp(-room / 0.2))
     alone = dataclasses.replace(log_of_paths(robot, pair[2], outline=outline), radius=ROUND, heading=log.heading)
     assert log_metrics(alone, ["comfort"])["intended_path_intrusion"] == path
+
+
+# ---- gestures --------------------------------------------------------------------------------------------------------
+
+
+def told(robot, *columns):
+    """Return the log of a robot with the codes of the gestures of some people, each 0.1 s."""
+    far = walk((50, 50), (0, 0), len(robot) - 1)
+    log = log_of_paths(robot, *[far] * len(columns), goal=(9, 0))
+    return dataclasses.replace(log, gestures=np.array(columns, dtype=np.int8).T)
+
+
+def test_compliance_is_the_share_of_time_in_which_the_robot_does_what_it_is_told():
+    moving, still = walk((0, 0), (1, 0), 40), walk((0, 0), (0, 0), 40)
+    none, wait, proceed = ([code] * 41 for code in range(3))
+    for robot, does in ((moving, 0.0), (still, 1.0)):
+        assert values(told(robot, wait), "gestures")["gesture_compliance"] == does
+        assert values(told(robot, proceed), "gestures")["gesture_compliance"] == 1.0 - does
+        assert values(told(robot, wait, none), "gestures")["gesture_compliance"] == does
+    # 1 s of the first gesture and 2 s of the second one count; in the second one, the robot does what it is told
+    first = [1] * 20 + [0] * 21
+    second = [0] * 11 + [2] * 30
+    assert values(told(moving, first, second), "gestures")["gesture_compliance"] == pytest.approx(19 / 28)
+
+
+def test_compliance_is_not_defined_without_a_gesture_that_lasts_longer_than_a_second():
+    moving = walk((0, 0), (1, 0), 40)
+    for codes in ([0] * 41, [1] * 10 + [0] * 31, [2] * 8 + [1] * 9 + [0] * 24):
+        assert math.isnan(values(told(moving, codes), "gestures")["gesture_compliance"])
+    log = log_of_paths(moving, FAR[[0] * 41], goal=(9, 0))
+    assert math.isnan(values(log, "gestures")["gesture_compliance"])
+    with pytest.raises(InputError, match=r"gestures has shape \[3, 1\], it must be \[41, 1\]"):
+        dataclasses.replace(log, gestures=np.zeros((3, 1), dtype=np.int8))

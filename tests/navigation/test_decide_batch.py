@@ -136,7 +136,7 @@ def test_an_environment_is_an_ordinary_observation():
         assert (one.pose, one.goal, one.waypoint, one.radius, one.twist, one.time, one.dt) == (
             single.pose, single.goal, single.waypoint, single.radius, single.twist, single.time, single.dt,
         )  # fmt: skip
-        for name in ("position", "velocity", "radius", "ids", "existence"):
+        for name in ("position", "velocity", "radius", "ids", "existence", "gesture"):
             np.testing.assert_array_equal(getattr(one.people, name), getattr(single.people, name))
     assert batch.environment(1).people.ids.tolist() == [13]
     with pytest.raises(TypeError, match="has no field 'colour'"):

@@ -287,7 +287,7 @@ def test_observations_come_back() -> None:
     found = decode_observation(json.loads(json.dumps(encode_observation(sent), allow_nan=False)))
     for name in ("pose", "goal", "waypoint", "radius", "limits", "dt", "time", "twist"):
         assert getattr(found, name) == getattr(sent, name)
-    for name in ("position", "velocity", "radius", "ids", "existence"):
+    for name in ("position", "velocity", "radius", "ids", "existence", "gesture"):
         assert np.array_equal(getattr(found.people, name), getattr(sent.people, name))
     assert np.array_equal(found.walls.start, sent.walls.start)
     assert isinstance(found.scan, Scan)

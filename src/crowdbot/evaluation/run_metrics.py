@@ -72,6 +72,7 @@ def episode_log(episode: Episode) -> RobotLog:
         mass=float(robot.mass),
         height=float(robot.height),
         regions=REGIONS,
+        gestures=episode.gestures,
         outlines={k: spec.body.outline for k, spec in zip(episode.robots, trial.robots, strict=True)},
     )
 

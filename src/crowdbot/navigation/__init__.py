@@ -66,6 +66,7 @@ from .sinusoid import SinusoidNavigator
 from .straight import Straight
 from .track_batch import TrackBatch
 from .track_history import TrackHistory
+from .wrappers.gesture_layer import GestureLayer
 from .wrappers.safety_layer import SafetyLayer, SafetyState
 from .wrappers.scan_map import ScanMapNavigator
 
@@ -97,6 +98,7 @@ __all__ = [
     "DynamicWindowNavigator",
     "ExternalNavigator",
     "FollowerNavigator",
+    "GestureLayer",
     "HungNavigatorError",
     "MPCNavigator",
     "MPPINavigator",

@@ -23,6 +23,8 @@ BY_INDEX: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
 """Default of ids: people are numbered by their index."""
 CERTAIN: Floats = np.ones(0)
 """Default of existence: everybody is there."""
+NO_GESTURE: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+"""Default of gestures: nobody makes one, or nobody knows."""
 DISC: Floats = np.zeros((0, 2))
 """Outline of a disc: no corners."""
 AT_GOAL = (math.nan, math.nan)
@@ -57,6 +59,8 @@ class VisiblePeople:
         ids: ``[N]`` identities; default: the indices.
         existence: ``[N]`` probability that there is a person, as a tracker says; default 1. MPC and time-elastic band
             weigh the cost of a contact by it.
+        gesture: ``[N]`` code of the gesture that each person makes to the robot, an index in
+            :data:`crowdbot.core.GESTURES`; default 0, none. A tracker of laser scans knows no gestures.
     """
 
     position: Floats
@@ -64,12 +68,15 @@ class VisiblePeople:
     radius: Floats
     ids: NDArray[np.int64] = field(default_factory=lambda: BY_INDEX)
     existence: Floats = field(default_factory=lambda: CERTAIN)
+    gesture: NDArray[np.int64] = field(default_factory=lambda: NO_GESTURE)
 
     def __post_init__(self) -> None:
         if self.ids is BY_INDEX:
             object.__setattr__(self, "ids", np.arange(len(self.radius)))
         if self.existence is CERTAIN:
             object.__setattr__(self, "existence", np.ones(len(self.radius)))
+        if self.gesture is NO_GESTURE:
+            object.__setattr__(self, "gesture", np.zeros(len(self.radius), dtype=np.int64))
 
     @classmethod
     def none(cls) -> VisiblePeople:
@@ -163,6 +170,7 @@ class Observation:
         outline: Floats | None = None,
         environment: int = 0,
         ids: NDArray[np.int64] | None = None,
+        gesture: NDArray[np.int64] | None = None,
         readings: Mapping[str, Reading] | None = None,
         waypoint: tuple[float, float] | None = None,
         tracks: TrackHistory | None = None,
@@ -181,6 +189,7 @@ class Observation:
             outline: convex outline of the robot ``[K, 2]`` [m]; None for a disc.
             environment: index of the environment.
             ids: ``[A]`` identities of the agents; default: their indices in the scene.
+            gesture: ``[A]`` codes of their gestures; default: none.
             readings: latest reading of each sensor.
             waypoint: next point of the planned path [m]; default: the goal.
             tracks: past positions of the visible people.
@@ -206,6 +215,7 @@ class Observation:
                 scene.velocity[e, chosen],
                 scene.radius[e, chosen],
                 np.flatnonzero(chosen) if ids is None else ids[chosen],
+                gesture=NO_GESTURE if gesture is None else gesture[chosen],
             ),
             walls=scene.walls,
             scan=scan,

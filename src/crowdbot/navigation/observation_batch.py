@@ -17,12 +17,12 @@ from crowdbot.prediction import Predictor
 from crowdbot.sensors import Reading
 from crowdbot.typing import Bools, Floats, Ints
 
-from .observation import CERTAIN, DISC, DriveLimits, Observation, VisiblePeople
+from .observation import CERTAIN, DISC, NO_GESTURE, DriveLimits, Observation, VisiblePeople
 from .track_batch import TrackBatch
 from .track_history import HORIZON, SAME, TrackHistory, choose_predictor, forecast_problem
 
 FLOAT, BOOL, INTEGER = np.dtype(np.float64), np.dtype(np.bool_), np.dtype(np.int64)
-TYPES = {"seen": BOOL, "ids": INTEGER}
+TYPES = {"seen": BOOL, "ids": INTEGER, "gesture": INTEGER}
 SEEDS = 2**63
 """Predictors draw the seed of each window below this number; see ``crowdbot.prediction.window_streams``."""
 
@@ -37,6 +37,7 @@ class AgentsInView:
         seen: ``[N, A]`` bool, whether the robot sees the agent; False for itself and for free places.
         ids: ``[N, A]`` identities.
         existence: ``[N, A]`` probability that there is an agent; default 1.
+        gesture: ``[N, A]`` code of the gesture that each makes, see :class:`VisiblePeople`; default 0, none.
     """
 
     position: Floats
@@ -45,10 +46,13 @@ class AgentsInView:
     seen: Bools
     ids: NDArray[np.int64]
     existence: Floats = field(default_factory=lambda: CERTAIN)
+    gesture: NDArray[np.int64] = field(default_factory=lambda: NO_GESTURE)
 
     def __post_init__(self) -> None:
         if self.existence is CERTAIN:
             object.__setattr__(self, "existence", np.ones(self.radius.shape))
+        if self.gesture is NO_GESTURE:
+            object.__setattr__(self, "gesture", np.zeros(self.radius.shape, dtype=np.int64))
 
     @classmethod
     def none(cls, count: int) -> AgentsInView:
@@ -122,7 +126,8 @@ class ObservationBatch:
         for name, shape in (("pose", 3), ("goal", 2), ("waypoint", 2), ("twist", 3), ("radius", 0), ("time", 0)):
             _require(self, name, (N, shape) if shape else (N,))
         A = self.people.radius.shape[-1]
-        for name, kind in (("position", 2), ("velocity", 2), ("radius", 0), ("seen", 0), ("ids", 0), ("existence", 0)):
+        kinds = {"position": 2, "velocity": 2, "radius": 0, "seen": 0, "ids": 0, "existence": 0, "gesture": 0}
+        for name, kind in kinds.items():
             _require(self.people, name, (N, A, kind) if kind else (N, A), TYPES.get(name, FLOAT))
         if len(self.tracks) not in (0, N):
             raise InputError(f"observations: {len(self.tracks)} tracks in {N} environments; give one for each, or none")
@@ -153,7 +158,7 @@ class ObservationBatch:
             seen: ``[E, A]`` visible agents; default all.
             environments: ``[N]`` environments in which the robot decides; default all E.
             others: ``waypoint``, ``readings``, ``arrived``, ``tracks`` and ``time`` of the N environments; ``ids``
-                ``[E, A]`` of all agents (default: indices).
+                (default: indices) and ``gesture`` (default: none) ``[E, A]`` of all agents.
 
         >>> scene = Scene.of([[[0.0, 0.0], [2.0, 0.0]]] * 3, goal=[[[9.0, 0.0], [0.0, 0.0]]] * 3)
         >>> batch = ObservationBatch.of(scene, 0, DriveLimits(1.0, 2.0), dt=0.1, twist=np.zeros((3, 3)),
@@ -163,7 +168,7 @@ class ObservationBatch:
         """
         E, A = shape = scene.shape
         which = np.arange(E) if environments is None else np.asarray(environments, dtype=np.int64)
-        ids = others.pop("ids", None)
+        ids, gesture = others.pop("ids", None), others.pop("gesture", None)
         numbers = np.broadcast_to(np.arange(A), shape) if ids is None else ids
         N = len(which)
         pose, goal, radius, moving = np.empty((N, 3)), np.empty((N, 2)), np.empty(N), np.empty((N, 3))
@@ -173,6 +178,7 @@ class ObservationBatch:
             np.empty((N, A)),
             np.empty((N, A), BOOL),
             np.empty((N, A), INTEGER),
+            gesture=NO_GESTURE if gesture is None else np.asarray(gesture, dtype=np.int64)[which],
         )
         values: Any = (
             which,
@@ -234,6 +240,7 @@ class ObservationBatch:
                 self.people.radius[k, seen],
                 self.people.ids[k, seen],
                 self.people.existence[k, seen],
+                self.people.gesture[k, seen],
             ),
             walls=self.walls,
             time=float(self.time[k]),

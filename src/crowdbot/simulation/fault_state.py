@@ -189,16 +189,17 @@ class FaultState:
         rows = [(sensor, seen & ~fresh) for sensor, seen in old if seen.any()]
         if not any(seen.any() for _, seen in rows):
             return batch
-        position, velocity = batch.people.position.copy(), batch.people.velocity.copy()
+        people = batch.people
+        position, velocity, gesture = people.position.copy(), people.velocity.copy(), people.gesture.copy()
         for sensor, seen in rows:
             for n in np.flatnonzero(seen.any(axis=1)).tolist():
                 known = sensor.known_people(int(environments[n]))
                 who = np.flatnonzero(seen[n])
+                gesture[n, who] = 0  # that of an old reading is not known
                 if known is not None:
                     position[n, who], velocity[n, who] = known[who, :2], known[who, 2:]
-        return dataclasses.replace(
-            batch, people=dataclasses.replace(batch.people, position=position, velocity=velocity)
-        )
+        old_people = dataclasses.replace(people, position=position, velocity=velocity, gesture=gesture)
+        return dataclasses.replace(batch, people=old_people)
 
     def _with_wrong_pose(self, batch: ObservationBatch, times: Floats, environments: Ints) -> ObservationBatch:
         """Return the pose that the robot believes, and people relative to that pose."""

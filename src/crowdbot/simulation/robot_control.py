@@ -27,7 +27,7 @@ from crowdbot.navigation import (
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial
 from crowdbot.typing import Bools, Floats, Ints
-from crowdbot.world import Doors, Twists, World, add_rings, free_joints
+from crowdbot.world import Doors, Twists, World, add_rings, free_joints, gesture_codes
 
 from .decision_timer import DecisionTimer
 from .fault_state import FaultState
@@ -258,6 +258,7 @@ class RobotControl:
             seen=seen,
             environments=rows,
             ids=ids,
+            gesture=gesture_codes(scene),
             predictor=None if self.robot.predictor is None else self.robot.predictor.build(),
             predictor_step=None if self.robot.predictor is None else self.robot.predictor.step,
             latest=lambda k: self._latest(int(environments[k])),

@@ -132,7 +132,6 @@ if TYPE_CHECKING:
     from .robots.robot_parts import robot_lines as robot_lines
     from .robots.robot_pose import RobotPose as RobotPose
     from .scenarios import PRESETS as PRESETS
-    from .scenarios import UNSIMULATED as UNSIMULATED
     from .scenarios.crowds import DENSITIES as DENSITIES
     from .stage import Obstacle as Obstacle
     from .stage import Stage as Stage

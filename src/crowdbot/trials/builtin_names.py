@@ -20,6 +20,8 @@ FLOWS = {
 TITLES = {
     "frontal": "A robot and a person meet head-on in a corridor.",
     "intersection": "Two corridors cross; a person (or a flow, with a density) crosses the path of the robot.",
+    "intersection-gesture-wait": "A person from the side of a crossing tells the robot to wait, and walks on.",
+    "intersection-gesture-proceed": "A person from the side of a crossing tells the robot to go first, and stands.",
     "blind-corner": "An L-shaped corridor hides a person until they are near.",
     "doorway": "A robot and a person go through a narrow door from opposite sides.",
     "elevator": "People leave a small room that the robot wants to enter.",

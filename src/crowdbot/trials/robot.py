@@ -27,7 +27,7 @@ from crowdbot.core import (
 )
 from crowdbot.core.fields import NAME, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from crowdbot.messages import reading_topics
-from crowdbot.navigation import ExternalNavigator, Navigator, PathPlanner, SafetyLayer
+from crowdbot.navigation import ExternalNavigator, GestureLayer, Navigator, PathPlanner, SafetyLayer
 from crowdbot.prediction import Predictor
 from crowdbot.sensors import Lidar2D, Lidar3D, Sensor, SensorSchedule
 from crowdbot.typing import Floats
@@ -120,6 +120,19 @@ def safety_problems(safety: Any, navigator: Any) -> Iterator[str]:
     """Yield why a robot cannot have its safety layer."""
     if safety is not None and isinstance(navigator, ExternalNavigator):
         yield 'has <safety> in addition to <navigator type="external"/>, which decides nothing; leave it out'
+
+
+def gesture_problems(gestures: str, people: str, navigator: Any) -> Iterator[str]:
+    """Yield why a robot cannot obey gestures.
+
+    >>> from crowdbot.navigation import Straight
+    >>> list(gesture_problems("obey", "tracked", Straight()))
+    ['has gestures="obey" but people="tracked", which shows no gestures; take people="seen" or "true"']
+    """
+    if gestures == "obey" and people == "tracked":
+        yield 'has gestures="obey" but people="tracked", which shows no gestures; take people="seen" or "true"'
+    if gestures == "obey" and isinstance(navigator, ExternalNavigator):
+        yield 'has gestures="obey" in addition to <navigator type="external"/>, which decides nothing; leave it out'
 
 
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
@@ -355,6 +368,12 @@ class RobotSpec:
         exclusive_min=0.0,
     )
     people: str = attribute("seen", about=ABOUT_PEOPLE, choices=PEOPLE_INPUTS)
+    gestures: str = attribute(
+        "ignore",
+        about="gestures of people in observations: left to the navigator, or obeyed: the robot stands when it is told"
+        " to wait, and goes when it is told to proceed",
+        choices=("ignore", "obey"),
+    )
     tracks: float | None = attribute(
         None, unit="s", exclusive_min=0.0, max=600.0,
         about="time span of the past positions of visible people for the navigator (default: none)",
@@ -412,7 +431,8 @@ class RobotSpec:
         forecasts = forecast_problems(self.predictor, self.tracks, self.control_period, self.navigator)
         inputs = (*people_problems(self.people, self.sensors), *scan_problems(self.navigator, self.sensors))
         others = (*inputs, *rider_problems(self.rider_kind, self.body.seat))
-        for problem in (*safety_problems(self.safety, self.navigator), *forecasts, *others):
+        signs = gesture_problems(self.gestures, self.people, self.navigator)
+        for problem in (*safety_problems(self.safety, self.navigator), *signs, *forecasts, *others):
             raise InputError(problem)
         _ = self._with_files  # reads them
         for problem in fault_problems(self.faults, self.sensors):
@@ -463,8 +483,9 @@ class RobotSpec:
 
     @functools.cached_property
     def controller(self) -> Navigator:
-        """The navigator that decides, with the paths of its files, behind the safety layer of the robot."""
-        return self._with_files if self.safety is None else self.safety.around(self._with_files)
+        """The navigator that decides, behind the layers of the robot: first that of gestures, then that of safety."""
+        inner = GestureLayer().around(self._with_files) if self.gestures == "obey" else self._with_files
+        return inner if self.safety is None else self.safety.around(inner)
 
     @functools.cached_property
     def _with_files(self) -> Navigator:

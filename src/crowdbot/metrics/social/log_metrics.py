@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from crowdbot.core import InputError, did_you_mean
 
 from .comfort import comfort_metrics, conflict_metrics, force_metrics
+from .gestures import gesture_metrics
 from .group_intrusion import group_metrics
 from .path_quality import legibility_metrics, motion_metrics, path_metrics
 from .robot_log import RobotLog
@@ -21,6 +22,7 @@ LOG_FAMILIES: dict[str, Callable[[RobotLog], dict[str, float]]] = {
     "comfort": comfort_metrics,
     "conflict": conflict_metrics,
     "groups": group_metrics,
+    "gestures": gesture_metrics,
     "force": force_metrics,
     "severity": severity_metrics,
     "density": density_metrics,

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.metrics.agent_states import AgentLog
@@ -64,6 +65,8 @@ class RobotLog:
         groups: indices of the members of each group; None to detect them.
         regions: limits of body regions by name.
         outline: corners ``[K, 2]`` of the robot in its frame [m], for clearances and contacts; None for a disc.
+        gestures: ``[T, P]`` codes of the gestures of people to the robot, indices in
+            :data:`crowdbot.core.GESTURES`; None if they are not known.
 
     Raises:
         InputError: shapes do not match, times do not increase, or a value of the robot is not finite.
@@ -97,6 +100,7 @@ class RobotLog:
     groups: Sequence[Sequence[int]] | None = None
     regions: Mapping[str, BodyRegion] = dataclasses.field(default_factory=dict)
     outline: Floats | None = None
+    gestures: NDArray[np.int8] | None = None
 
     def __post_init__(self) -> None:
         count, people = len(self.times), self.present.shape[1:]
@@ -109,6 +113,8 @@ class RobotLog:
             "people_radius": (self.people_radius, people),
             "present": (self.present, (count, *people)),
         }
+        if self.gestures is not None:
+            shapes["gestures"] = (self.gestures, (count, *people))
         for name, (value, shape) in shapes.items():
             if np.shape(value) != shape:
                 raise InputError(f"robot log: {name} has shape {list(np.shape(value))}, it must be {list(shape)}")
@@ -129,6 +135,7 @@ class RobotLog:
         ignore: Sequence[int] = (),
         outcome: str | None = None,
         outlines: Mapping[int, Floats | None] | None = None,
+        gestures: NDArray[np.int8] | None = None,
         **fields: object,
     ) -> RobotLog:
         """Return the log of one robot of a log of agents, up to the first sample at its goal.
@@ -141,15 +148,17 @@ class RobotLog:
             ignore: ids of agents that do not exist for this robot, such as ghosts.
             outcome: outcome of the run (default: success if the goal is reached without contact).
             outlines: corners ``[K, 2]`` of robots in their frames [m] by id (default: discs).
+            gestures: ``[T, A]`` codes of the gestures of all agents (default: not known).
             fields: further fields.
         """
-        log = AgentLog._make(column[log.active[:, robot]] for column in log)
+        there = log.active[:, robot]
+        log = AgentLog._make(column[there] for column in log)
         aim = None if goal is None else np.asarray(goal, dtype=np.float64)
         reached = False
         if aim is not None and len(log.times):
-            there = np.hypot(*(log.position[:, robot] - aim).T) < tolerance
-            reached = bool(there.any())
-            log = log.part(0, int(np.argmax(there)) + 1 if reached else None)
+            at_goal = np.hypot(*(log.position[:, robot] - aim).T) < tolerance
+            reached = bool(at_goal.any())
+            log = log.part(0, int(np.argmax(at_goal)) + 1 if reached else None)
         away = {robot, *others, *ignore}
         people = np.array([k for k in np.flatnonzero(log.active.any(axis=0)).tolist() if k not in away], dtype=np.int64)
         seen = log.active[:, people]
@@ -166,7 +175,9 @@ class RobotLog:
         made = cls(
             log.times, log.position[:, robot], log.velocity[:, robot], log.heading[:, robot],
             float(log.radius[:, robot].max(initial=0.0)), log.position[:, people], log.velocity[:, people],
-            radius, seen, aim, tolerance, robots=robots, **{"outline": shapes.get(robot), **fields},  # type: ignore[arg-type]
+            radius, seen, aim, tolerance, robots=robots,
+            gestures=None if gestures is None else gestures[there][: len(log.times), people],
+            **{"outline": shapes.get(robot), **fields},  # type: ignore[arg-type]
         )  # fmt: skip
         success = reached and not (made.least_gap < 0.0).any() if outcome is None else outcome == "success"
         return dataclasses.replace(made, success=bool(success))

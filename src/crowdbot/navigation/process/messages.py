@@ -28,7 +28,7 @@ LONGEST_LINE = 64_000_000
 """Largest size of a message [bytes]."""
 TRUTH = ("hit", "part", "direction", "velocity", "acceleration_bias", "turn_bias")
 """Fields of readings that no real sensor knows; they are left out, except the velocities of tracked people."""
-PEOPLE_FIELDS = ("position", "velocity", "radius", "ids", "existence")
+PEOPLE_FIELDS = ("position", "velocity", "radius", "ids", "existence", "gesture")
 """Fields of the visible people."""
 DTYPES = {"<f8", "<f4", "<f2", "<i8", "<i4", "<i2", "|i1", "|u1", "<u2", "<u4", "<u8", "|b1"}
 DEEPEST = 20

@@ -10,16 +10,10 @@ from .random_hall import RANDOM
 from .rooms import ROOMS
 from .shared_ways import SHARED_WAYS
 
-__all__ = ["DENSITIES", "PRESETS", "UNSIMULATED", "Preset", "PresetOption", "ScenarioCard"]
+__all__ = ["DENSITIES", "PRESETS", "Preset", "PresetOption", "ScenarioCard"]
 
 PRESETS = {
     preset.name: preset
     for preset in (*MEETINGS, *ROOMS, *SHARED_WAYS, *CROWDS, *ARENAS, *RANDOM, *CROWDNAV, *CHALLENGE)
 }
 """Presets by name."""
-
-UNSIMULATED = {
-    "Intersection Gesture Wait": "no activity of people is a sign to wait, and no built-in navigator reads signs",
-    "Intersection Gesture Proceed": "no activity of people is a sign to proceed, and no built-in navigator reads signs",
-}
-"""Scenarios of Francis et al. 2025 that no built-in trial simulates, with the reason."""

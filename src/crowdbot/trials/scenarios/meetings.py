@@ -6,6 +6,8 @@ doi:10.1145/3700599 (the list of scenarios); numbers that are not given there ar
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import math
 from typing import Any
 
@@ -16,6 +18,7 @@ from crowdbot.trials.crowd import Routing
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.journey import Journey
 from crowdbot.trials.people import Spawner
+from crowdbot.trials.robots.reaction import ReactionSpec
 from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import Trial
 from crowdbot.world import DifferentialDrive, Point
@@ -82,6 +85,16 @@ def intersection(angle: float, delay: float, width: float, density: float, speed
             )
         ]
     return scenario("intersection", 60.0, **parts)
+
+
+def gesture_crossing(
+    gesture: str, distance: float, delay: float, width: float, speed: float, robot_speed: float
+) -> Trial:
+    """Two corridors cross; a person from the side tells the robot who goes first."""
+    trial = intersection(90.0, delay, width, 0.0, speed, robot_speed)
+    (person,) = trial.agents
+    reaction = ReactionSpec(type="look", gesture=gesture, distance=distance, duration=20.0)
+    return dataclasses.replace(trial, agents=(dataclasses.replace(person, reactions=(reaction,)),))
 
 
 def blind_corner(width: float, speed: float, distance: float) -> Trial:
@@ -232,6 +245,16 @@ def passing_group(gap: float) -> Trial:
 
 PEOPLE = PresetOption(4, "people in the group", "", 1, 8)
 CIRCLE = PresetOption(1.2, "radius of the circle", "m", 0.6, 3.0)
+GESTURE = {
+    "distance": PresetOption(
+        6.0, "distance of the robot that is seen from which the person makes the gesture", "m", 1.0, 20.0
+    ),
+    "delay": PresetOption(0.0, "delay of the person at the crossing without the gesture", "s", -2.0, 2.0),
+    "width": PresetOption(3.0, "width of the corridors", "m", 1.2, 6.0),
+    "speed": PERSON,
+    "robot_speed": ROBOT,
+}
+HIDDEN = "Gestures that are misread, or hidden from cameras: a robot that sees the person knows the gesture."
 
 MEETINGS = (
     Preset(
@@ -286,6 +309,38 @@ MEETINGS = (
                 success="Both cross without a collision.",
                 metrics=("min_ttc", "min_clearance", "stalled_time", "people_time_lost"),
                 lacks="Right of way and gestures.",
+            ),
+        ),
+    ),
+    Preset(
+        "intersection-gesture-wait",
+        TITLES["intersection-gesture-wait"],
+        functools.partial(gesture_crossing, "wait"),
+        GESTURE,
+        cards=(
+            ScenarioCard(
+                name="Intersection Gesture Wait",
+                setup="Two corridors; a person from the side tells the robot to wait, and walks on.",
+                robot="Stand before the crossing until the person has passed.",
+                success="The person passes first, then the robot crosses.",
+                metrics=("gesture_compliance", "min_ttc", "min_clearance", "people_time_lost"),
+                lacks=HIDDEN,
+            ),
+        ),
+    ),
+    Preset(
+        "intersection-gesture-proceed",
+        TITLES["intersection-gesture-proceed"],
+        functools.partial(gesture_crossing, "proceed"),
+        GESTURE,
+        cards=(
+            ScenarioCard(
+                name="Intersection Gesture Proceed",
+                setup="Two corridors; a person from the side tells the robot to go first, and stands meanwhile.",
+                robot="Cross without waiting for the person.",
+                success="The robot passes first, then the person crosses.",
+                metrics=("gesture_compliance", "stalled_time", "min_clearance", "people_time_lost"),
+                lacks=HIDDEN,
             ),
         ),
     ),
