@@ -19,7 +19,7 @@ WALKERS = (
 YOUNG = ("boy-08", "girl-09", "boy-12", "girl-13", "mannequin", "mannequin")
 BUSY = (
     "man-32", "woman-36", "man-44", "woman-20", "man-60", "woman-66", "man-27", "woman-41", "man-38", "woman-60",
-    "woman-28", "man-55", "man-20", "woman-24",
+    "woman-28", "man-55", "man-20", "woman-24", "woman-32", "man-50",
 )  # fmt: skip
 FACES = ("man-20", "woman-20", "man-38", "woman-36", "man-66", "woman-60", "boy-08", "girl-13")
 SPEEDS = {"walk": 1.2, "stick": 0.8, "pram": 1.1, "wheelchair": 1.0, "run": 3.0}
@@ -82,7 +82,7 @@ def busy() -> Image3:
     """All activities, in two rows."""
     half = len(ACTIVITIES) // 2
     parts = [
-        row(BUSY[rows], list(ACTIVITIES[rows]), 1.2, np.arange(14)[rows], apart=1.25, size=(1280, 420))
+        row(BUSY[rows], list(ACTIVITIES[rows]), 1.2, np.arange(len(BUSY))[rows], apart=1.25, size=(1280, 380))
         for rows in (slice(0, half), slice(half, 2 * half))
     ]
     return np.vstack(parts)

@@ -46,6 +46,40 @@ def test_a_waving_hand_is_above_the_shoulder_and_moves():
     assert np.ptp(np.array(seen), axis=0)[:, :2].max() > 0.1
 
 
+def test_who_tells_a_robot_to_wait_stretches_an_arm_ahead_with_the_palm_up():
+    gait, state = standing("signal-wait")
+    posture, ahead = gait.posture(state), np.array([np.cos(0.3), np.sin(0.3), 0.0])
+    shoulder, hand, fingers = (place(posture, name) for name in ("upperarm_r", "hand_r", "fingers_02_r"))
+    assert ((hand - shoulder) @ ahead).min() > 0.2
+    assert np.abs(hand[:, 2] - shoulder[:, 2]).max() < 0.1
+    assert (fingers - hand)[:, 2].min() > 0.04  # the fingers point up, so that the palm faces ahead
+    assert np.abs((fingers - hand) @ ahead).max() < 0.04
+    left = place(posture, "hand_l")
+    assert (left[:, 2] < shoulder[:, 2] - 0.3).all()
+
+
+def test_who_tells_a_robot_to_proceed_sweeps_an_arm_aside():
+    gait, state = standing("signal-proceed")
+    seen, aside = [], np.array([-np.sin(0.3), np.cos(0.3), 0.0])
+    for _ in range(80):
+        state = gait.step(state, state.position, np.zeros((3, 2)), [0.3] * 3, 0.02)
+        seen.append(place(gait.posture(state), "hand_r") - place(gait.posture(state), "pelvis"))
+    assert np.ptp(np.array(seen) @ aside, axis=0).min() > 0.2
+    assert np.ptp(np.array(seen)[..., 2], axis=0).max() < 0.1
+
+
+@pytest.mark.parametrize("other", ["signal-wait", "signal-proceed"])
+def test_a_signal_begins_and_ends_without_a_jump(other):
+    gait, state = standing("walk")
+    before = gait.posture(state).position
+    for activity in (other, "walk"):
+        for _ in range(50):
+            state = gait.step(state, state.position, np.zeros((3, 2)), [0.3] * 3, 0.02, activity=activity)
+            now = gait.posture(state).position
+            assert np.linalg.norm(now - before, axis=-1).max() < 0.02 * 3.0
+            before = now
+
+
 @pytest.mark.parametrize("other", ["walk", "phone", "carry", "stick", "pram", "run"])
 def test_a_waving_hand_rises_and_falls_without_a_jump(other):
     gait, state = standing(other)

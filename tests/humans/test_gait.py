@@ -157,7 +157,7 @@ def test_wrong_activities_and_counts_are_named():
         gait.start([[0.0, 0.0]], [0.0], activity="fone")
     with pytest.raises(InputError, match="2 activities are given for 1 people"):
         gait.start([[0.0, 0.0]], [0.0], activity=["walk", "sit"])
-    with pytest.raises(InputError, match="activity index 99 must be from 0 to 13"):
+    with pytest.raises(InputError, match="activity index 99 must be from 0 to 15"):
         gait.start([[0.0, 0.0]], [0.0], activity=np.array([99]))
     with pytest.raises(InputError, match="2 ids are given for 1 people"):
         Gait(People.of(["man-20"]), ids=[1, 2])

@@ -12,9 +12,10 @@ import pytest
 from simulator_session import ready, simulator, wait_until
 
 from crowdbot.core import EpisodeError
+from crowdbot.humans import ACTIVITIES
 from crowdbot.recording import RecordedSimulation, open_run, read_episode, record
 from crowdbot.simulation import PushOrder
-from crowdbot.trials import load_trial, parse_trial
+from crowdbot.trials import load_trial, parse_trial, trial_xml
 from crowdbot.web.scene import (
     LAYERS,
     RecordedScene,
@@ -228,6 +229,33 @@ def test_the_inspector_tells_the_balance(pushed):
     with RecordedSimulation(pushed) as recorded:
         for seconds, person, word in ((0.1, 0, "upright"), (2.5, 0, "falls, lies or gets up"), (2.5, 1, "upright")):
             assert ["balance", word, ""] in inspect_agent(recorded.at(seconds), person)["rows"]
+
+
+def test_gestures_are_shown_as_in_the_simulation(tmp_path):
+    text = trial_xml(load_trial("intersection-gesture-wait", duration=7.0))
+    assert text.count("<agent ") == 1
+    trial = parse_trial(text.replace("<agent ", '<agent activity="carry" '))
+    record(trial, 1, tmp_path / "wait.mcap")
+    carry, signal = ACTIVITIES.index("carry"), ACTIVITIES.index("signal-wait")
+    with RecordedSimulation(tmp_path / "wait.mcap") as recorded:
+        episode, simulation = read_episode(tmp_path / "wait.mcap"), recorded.trial_simulation()
+        scene = RecordedScene(recorded.trial_simulation(), episode)
+        bodies = WalkingBodies(simulation)
+        shown = []
+        for k in range(0, len(episode.times), 4):
+            seconds = float(episode.times[k])
+            while simulation.world.times[0] < seconds - 1e-9:
+                simulation.advance()
+                bodies.follow(simulation)
+            scene.at(seconds)
+            expected = signal if episode.gestures[k, 0] else carry
+            assert bodies.motion.state.wish[0] == expected
+            assert scene.motion.state.wish[0] == expected
+            shown.append(expected)
+        assert set(shown) == {carry, signal}
+        for seconds, expected in ((5.0, signal), (1.0, carry)):  # also after a jump in time
+            scene.at(seconds)
+            assert scene.motion.state.wish[0] == expected
 
 
 def test_falls_and_pushes_are_events(pushed):

@@ -11,10 +11,11 @@ from crowdbot.core import InputError, UnknownName
 
 ACTIVITIES = (
     "walk", "talk", "phone", "bottle", "text", "sit", "wave", "carry", "read", "stick", "pram", "wheelchair", "run",
-    "look",
+    "look", "signal-wait", "signal-proceed",
 )  # fmt: skip
 """``walk`` includes standing and turning. All activities except ``sit`` combine with walking. ``pram`` and
-``wheelchair`` push one, ``look`` turns the head to the nearest robot."""
+``wheelchair`` push one, ``look`` turns the head to the nearest robot, ``signal-wait`` and ``signal-proceed`` are the
+gestures that tell a robot to wait, or to go first."""
 FIRST_POSE = 6
 """Index of the first activity whose pose is put over that of the gait."""
 TALK, PHONE, BOTTLE, TEXT, SIT = 1, 2, 3, 4, 5

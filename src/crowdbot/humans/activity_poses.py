@@ -27,6 +27,10 @@ WAVE, WAVE_SWING, WAVE_RATE = (0.08, -0.19, 0.135), 0.055, 1.7
 """Wrist of a waving hand, its swing in shares of the stature, and its frequency [Hz]."""
 RISE = (0.22, -0.20, -0.10)
 """Point of the same measures that bends the way of the waving hand forward."""
+PALM, PALM_BEND = (0.27, -0.11, 0.01), math.radians(80.0)
+"""Wrist of the hand that tells a robot to wait, and how far the hand is bent up, so that the palm faces the robot."""
+SWEEP, SWEEP_SWING, SWEEP_RATE = (0.17, -0.10, -0.10), 0.12, 0.7
+"""Middle of the way of the wrist that tells a robot to proceed, from the right to the left, and its frequency [Hz]."""
 NOD = {"read": 0.42}
 FARTHEST_LOOK = math.radians(75.0)
 KEYS = np.array([0.0, 0.15, 0.36, 0.50, 0.64, 0.80, 0.90, 1.0])
@@ -93,6 +97,23 @@ def _pose_one(body: Bones, name: str, share: float, state: Gaits, i: int, target
         body.reach(1, body.from_shoulders(STICK[0] + swing, *STICK[1:]), _pole(body, -0.8, -0.3), share)
     elif name == "wave":
         _wave(body, float(state.clock[i]), share)
+    elif name == "signal-wait":
+        body.reach(1, body.from_shoulders(*PALM), _pole(body, -0.5, -0.5), share)
+        _bend_hand(body, PALM_BEND, share)
+    elif name == "signal-proceed":
+        swing = SWEEP_SWING * math.sin(2.0 * math.pi * SWEEP_RATE * float(state.clock[i]))
+        place = (SWEEP[0] + 0.3 * (SWEEP_SWING - abs(swing)), SWEEP[1] + swing, SWEEP[2])
+        body.reach(1, body.from_shoulders(*place), _pole(body, -0.5, -0.5), share)
+
+
+def _bend_hand(body: Bones, angle: float, share: float) -> None:
+    """Bend the right hand up at the wrist."""
+    left = np.array([-math.sin(body.yaw), math.cos(body.yaw), 0.0])
+    turn = turn_about(left, -angle * share)
+    for name in ("hand", "fingers_01", "fingers_02", "thumb"):
+        k = bone(f"{name}_r")
+        body.R[k] = turn @ body.R[k]
+    body.place("hand_r")
 
 
 def _wave(body: Bones, clock: float, share: float) -> None:

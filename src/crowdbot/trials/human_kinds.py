@@ -24,8 +24,8 @@ ABOUT_BODY = (
 )
 ABOUT_RIDER = "person in the seat, as the body of a person (default: as the type); only wheelchairs have a seat"
 ABOUT_ACTIVITY = (
-    "walk, talk, phone, bottle, text, sit, wave, carry, read, stick, pram, wheelchair, run, look, or a file of motion"
-    " capture (walk.clip); from a list, one is chosen at random"
+    "walk, talk, phone, bottle, text, sit, wave, carry, read, stick, pram, wheelchair, run, look, signal-wait,"
+    " signal-proceed, or a file of motion capture (walk.clip); from a list, one is chosen at random"
 )
 CLIP_NAME = re.compile(r"[A-Za-z0-9_-]{1,60}\.clip")
 """Names of clips: files beside the trial."""

@@ -96,6 +96,7 @@ if TYPE_CHECKING:
     from .reactions.reaction import ALWAYS_IN_FORCE as ALWAYS_IN_FORCE
     from .reactions.reaction import REACTIONS as REACTIONS
     from .reactions.reaction import RobotReaction as RobotReaction
+    from .reactions.robot_reactions import GESTURE as GESTURE
     from .reactions.robot_reactions import RobotReactions as RobotReactions
     from .reactions.robot_reactions import gesture_codes as gesture_codes
     from .reactions.robot_reactions import people_by_gesture as people_by_gesture

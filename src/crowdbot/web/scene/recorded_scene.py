@@ -15,7 +15,7 @@ from crowdbot.recording import RecordedEpisode, RecordedRows
 from crowdbot.sensors import Reading
 from crowdbot.simulation import AddPersonOrder, RobotControl, Simulation
 from crowdbot.typing import Floats, Ints
-from crowdbot.world import PeopleMotion, worlds_of
+from crowdbot.world import GESTURE, PeopleMotion, worlds_of
 
 from .robot_links import link_frames, poses_of, standing_links
 from .scene_instant import SceneInstant
@@ -154,7 +154,11 @@ class RecordedScene:
         heading[0, slots] = one.heading[here] + part * np.arctan2(np.sin(turn), np.cos(turn))
         active[0, slots] = True
         self.ids[slots] = one.ids[here]
-        return rest.replace(position=position, velocity=velocity, heading=heading, active=active)
+        memory = dict(rest.memory)
+        if one.gestures is not None:
+            memory[GESTURE] = np.zeros(rest.shape)
+            memory[GESTURE][0, slots] = one.gestures[here]
+        return rest.replace(position=position, velocity=velocity, heading=heading, active=active, memory=memory)
 
     def _fall_poses(self, seconds: float) -> dict[int, FallPose]:
         """Return the poses of people out of balance by row of their body; none in files that do not have them."""
@@ -179,8 +183,8 @@ class RecordedScene:
         """Let people walk for a while up to an instant, so that their legs do not depend on the way to it."""
         count = min(round(BEFORE / STRIDE), math.floor((seconds - self._first) / STRIDE + 1e-9))
         first = self.scene_at(seconds - count * STRIDE)
-        wish = self.motion.state.wish[: len(self.motion.afoot)].astype(np.int64)
-        self.motion.begin(first, [self.motion.people.activities[k] for k in wish.tolist()])
+        usual = self.motion.usual[: len(self.motion.afoot)]
+        self.motion.begin(first, [self.motion.people.activities[k] for k in usual.tolist()])
         for k in range(count - 1, -1, -1):
             self._walk(self.scene_at(seconds - k * STRIDE), STRIDE)
 

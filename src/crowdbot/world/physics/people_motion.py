@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Storage, stream
+from crowdbot.core import GESTURES, InputError, Scene, Storage, stream
 from crowdbot.humans import (
     ACTIVITIES,
     CHAIR,
@@ -27,12 +27,15 @@ from crowdbot.humans import (
 )
 from crowdbot.typing import Floats, Ints
 from crowdbot.world.ground.ground import Ground
+from crowdbot.world.reactions.robot_reactions import gesture_codes
 
 NAMES = tuple(limb.name for limb in LIMBS)
 SOLE, STEEP = 0.06, 2.0
 """A foot stands on the highest ground within ``SOLE`` [m] of the ankle, and rises ahead of an edge with this slope."""
 LOOK, GAZE = ACTIVITIES.index("look"), 0.9
 """The activity of looking at the nearest robot, and the height [m] of the point looked at."""
+SIGNALS = np.array([ACTIVITIES.index(f"signal-{name}") if name != "none" else -1 for name in GESTURES])
+"""Activity that shows each gesture."""
 FASTEST = 11.9
 """Upper limit of the walking speed [m/s] for gaits."""
 
@@ -70,12 +73,13 @@ class PeopleMotion:
     Attributes:
         agents: agents of people, then of wheelchairs with riders; afoot: without wheelchairs.
         people: bodies; state: current poses.
+        usual: index of the activity of each while they make no gesture.
 
     Raises:
         InputError: the number of bodies is wrong.
     """
 
-    storage = Storage(constants=("agents", "people", "row", "gait", "radius", "ground"))
+    storage = Storage(constants=("agents", "people", "row", "gait", "radius", "ground", "usual"))
 
     def __init__(
         self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0, riders: Sequence[int] = (),
@@ -98,6 +102,7 @@ class PeopleMotion:
         self.gait = self._new_gait(seed, range(len(agents)))
         place, velocity, heading = self._of(scene)
         self.state: Gaits = self.gait.start(place, heading, velocity, self._busy("walk"))
+        self.usual: Ints = self.state.wish.astype(np.int64)
         self.ends, self.radius = self._measured(self.state)
 
     def grow(self, agents: int, new: Sequence[int] = ()) -> None:
@@ -140,10 +145,11 @@ class PeopleMotion:
         fresh = self.gait.start(np.zeros((count, 2)), np.zeros(count))
         ends, radius = self._measured(fresh)
 
-        def joined(old: Floats, start: Floats) -> Floats:
+        def joined(old: NDArray[Any], start: NDArray[Any]) -> NDArray[Any]:
             return np.concatenate([old[: rows.start], start[rows], old[rows.start :]])
 
         self.state = type(self.state)(*(joined(old, new) for old, new in zip(self.state, fresh, strict=True)))
+        self.usual = joined(self.usual, fresh.wish.astype(np.int64))
         self.ends, self.radius = joined(self.ends, ends), joined(self.radius, radius)
 
     def begin(self, scene: Scene, activity: str | Sequence[str]) -> None:
@@ -153,6 +159,7 @@ class PeopleMotion:
         """
         place, velocity, heading = self._of(scene)
         self.take(self.gait.start(place, heading, velocity, self._busy(activity)))
+        self.usual = self.state.wish.astype(np.int64)
 
     def _busy(self, activity: str | Sequence[str]) -> list[str]:
         own = [activity] * len(self.afoot) if isinstance(activity, str) else list(activity)
@@ -163,9 +170,13 @@ class PeopleMotion:
         self.take(self.next_state(scene, dt))
 
     def next_state(self, scene: Scene, dt: float) -> Gaits:
-        """Return the body states after ``dt`` [s] at the positions in ``scene``."""
+        """Return the body states after ``dt`` [s] at the positions in ``scene``, with the gestures of its people."""
         place, velocity, heading = self._of(scene)
-        return self.gait.step(self.state, place, velocity, heading, dt)
+        codes, shown = gesture_codes(scene), None
+        if codes is not None:
+            own = codes[0, self.agents]
+            shown = np.where(own > 0, SIGNALS[own], self.usual)
+        return self.gait.step(self.state, place, velocity, heading, dt, shown)
 
     def take(self, state: Gaits, ends: Floats | None = None) -> None:
         """Set the state; ``ends`` are its limb ends, if known."""

@@ -376,7 +376,7 @@ def gesture_codes(scene: Scene) -> NDArray[np.int8] | None:
     codes = scene.memory.get(GESTURE)
     if codes is None:
         return None
-    return np.where(scene.active & (scene.memory[REACTION_STATE][..., 0] > 0.0), codes, 0.0).astype(np.int8)
+    return np.where(scene.active, codes, 0.0).astype(np.int8)
 
 
 def people_by_gesture(scene: Scene, ids: NDArray[np.int64]) -> dict[str, list[int]] | None:
