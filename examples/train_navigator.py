@@ -10,7 +10,8 @@ The network is that of the navigator: two layers for each person, whose outputs 
 by attention, and three for the action, a velocity in the frame of the goal; ``recurrent`` has a recurrent network over
 the last positions of each person before these layers. ``weights/policy.npz``, ``weights/attention-policy.npz`` or
 ``weights/recurrent-policy.npz`` has the weights, and ``weights/model.zip`` the model of stable-baselines3 with its value
-and optimiser. Ctrl-C ends the training early and keeps both.
+and optimiser. Ctrl-C ends the training early and keeps both. ``--seed 0:5`` trains with five seeds, into the folders
+``weights/seed-0`` to ``weights/seed-4``; the same command again leaves out those that are there with all their steps.
 """
 
 import argparse
@@ -28,7 +29,8 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecEnv
 from train_with_stable_baselines3 import OUTCOMES, CrowdVecEnv, OutcomeTable
 
-from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods
+from crowdbot.core import InputError
+from crowdbot.evaluation import EvaluationPlan, evaluate, parse_methods, parse_seeds
 from crowdbot.gym import ActionForm, ObservationForm, Reward
 from crowdbot.navigation import (
     BODY_VALUES,
@@ -120,11 +122,16 @@ class GoalFrameAction(ActionForm):
         return out
 
 
+def environments_of(trials, wanted):
+    """Return the number of environments: a multiple of the number of trials, at most the wanted one if possible."""
+    return max(1, wanted // len(trials)) * len(trials)
+
+
 class GoalFrame(VecEnv):
     """Environments of several trials, whose actions are shares of the maximum speed in the frame of the goal."""
 
     def __init__(self, trials, num_envs, network="pooled"):
-        each = max(1, num_envs // len(trials))
+        each = environments_of(trials, num_envs) // len(trials)
         self.parts = []
         for name, values in trials:
             seen = PolicyObservation(network=network)
@@ -295,19 +302,66 @@ NETWORKS = {
 """Weights of the navigator, and the part of the network before the layers of the action."""
 
 
-def parse_trials(text):
+def parse_trials(text, crowd=None):
     """Return names and values of trials, such as ``"crowdnav-circle-5, crowdnav-circle-10 people=8"``."""
     parts = [part.split() for part in text.split(",")]
-    return [(name, dict(word.split("=", 1) for word in words)) for name, *words in parts]
+    model = {"crowd/type": crowd} if crowd else {}
+    return [(name, dict(word.split("=", 1) for word in words) | model) for name, *words in parts]
 
 
 def add_options(parser, environments, cases):
     """Add the options that the trainings of all navigators have."""
     parser.add_argument("--steps", type=int, default=1_500_000)
     parser.add_argument("--environments", type=int, default=environments)
-    parser.add_argument("--cases", type=int, default=cases, help="number of unseen cases of each trial")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--cases", type=int, default=cases, help="number of unseen cases of each trial (0: no test)")
+    parser.add_argument("--crowd", help="crowd model of all trials, such as orca (default: that of each trial)")
+    parser.add_argument("--seed", type=_seeds, default=(0,), help="one seed, or seeds such as 0:5 with a folder each")
     parser.add_argument("--out", type=Path, default=Path("weights"), help="folder of the weights and of model.zip")
+
+
+def _seeds(text):
+    try:
+        return parse_seeds(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def trainings(options, trials, kind):
+    """Yield the options of each training, which is that of one seed.
+
+    Of several seeds, those are left out whose weights (class ``kind``) are there with all their steps; a training that
+    ends early is the last one.
+    """
+    begin = 0.0  # the first training has the imports, too
+    for seed in options.seed:
+        out = options.out / f"seed-{seed}" if len(options.seed) > 1 else options.out
+        one = argparse.Namespace(**vars(options) | {"seed": seed, "out": out, "begin": begin})
+        file = out / f"{kind.navigator}.npz"
+        if len(options.seed) > 1 and is_complete(file, one, trials, kind):
+            print(f"{file} is there with all its steps", flush=True)
+            continue
+        yield one
+        if not is_complete(file, one, trials, kind):
+            return
+        begin = time.process_time()
+
+
+def is_complete(file, options, trials, kind):
+    """Return whether a file has the weights of a training that was not ended early."""
+    if not file.exists():
+        return False
+    _, card = kind.read(file)
+    return plan_of(options, trials).items() <= card.items() and card["steps"] >= options.steps
+
+
+def plan_of(options, trials):
+    """Return what a training is to do, as values of the card of its weights."""
+    return {
+        "trials": [" ".join([name, *map("=".join, values.items())]) for name, values in trials],
+        "environments": environments_of(trials, options.environments),
+        "seed": options.seed,
+        "planned_steps": options.steps,
+    }
 
 
 def train(model, options, trials, table, network_weights):
@@ -318,19 +372,14 @@ def train(model, options, trials, table, network_weights):
         print("the training ends early")
     options.out.mkdir(parents=True, exist_ok=True)
     model.save(options.out / "model.zip")
-    weights, seconds = network_weights(model), round(time.process_time())
+    weights, seconds = network_weights(model), round(time.process_time() - options.begin)
     file = options.out / f"{weights.navigator}.npz"
-    card = {
-        "command": shlex.join(["python", Path(sys.argv[0]).name, *sys.argv[1:]]),
-        "trials": [" ".join([name, *map("=".join, values.items())]) for name, values in trials],
-        "environments": model.n_envs,
-        "seed": options.seed,
-        "planned_steps": options.steps,
-        "steps": model.num_timesteps,
-        "processor_time": seconds,
-    }
-    weights.save(file, card)
+    command = shlex.join(["python", Path(sys.argv[0]).name, *sys.argv[1:]])
+    made = {"command": command, "steps": model.num_timesteps, "processor_time": seconds}
+    weights.save(file, plan_of(options, trials) | made)
     print(f"{model.num_timesteps} steps, {seconds} s of processor time, weights in {file}", flush=True)
+    if not options.cases:
+        return
     plan = EvaluationPlan(
         [dataclasses.replace(load_trial(name, values), name=f"{name}-{k}") for k, (name, values) in enumerate(trials)],
         parse_methods(f"{weights.navigator} file={file}"),
@@ -350,12 +399,13 @@ def main():
     add_options(parser, environments=256, cases=200)
     options = parser.parse_args()
     torch.set_num_threads(1)  # small networks: more threads only wait for each other
-    trials = parse_trials(options.trials or TRIALS[options.network])
-    envs = GoalFrame(trials, options.environments, options.network)
-    model = make_model(envs, max(2, min(8192, options.steps) // envs.num_envs), options.seed, options.network)
-    table = OutcomeTable(updates=20 if options.steps > 200_000 else 1)
-    train(model, options, trials, table, network_weights)
-    envs.close()
+    trials = parse_trials(options.trials or TRIALS[options.network], options.crowd)
+    for one in trainings(options, trials, NETWORKS[options.network][0]):
+        envs = GoalFrame(trials, one.environments, one.network)
+        model = make_model(envs, max(2, min(8192, one.steps) // envs.num_envs), one.seed, one.network)
+        table = OutcomeTable(updates=20 if one.steps > 200_000 else 1)
+        train(model, one, trials, table, network_weights)
+        envs.close()
 
 
 if __name__ == "__main__":

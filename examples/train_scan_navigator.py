@@ -18,7 +18,7 @@ import torch
 from gymnasium import spaces
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecEnv
-from train_navigator import GoalFrame, add_options, make_ppo, parse_trials, train
+from train_navigator import GoalFrame, add_options, environments_of, make_ppo, parse_trials, train, trainings
 from train_with_stable_baselines3 import CrowdVecEnv, OutcomeTable
 
 from crowdbot.gym import ActionForm, ObservationForm, Reward
@@ -108,7 +108,7 @@ class ScanEnvs(GoalFrame):
     """Environments of several trials with the inputs and the output of the navigator ``scan-policy``."""
 
     def __init__(self, trials, num_envs):
-        each = max(1, num_envs // len(trials))
+        each = environments_of(trials, num_envs) // len(trials)
         self.parts = []
         for name, values in trials:
             seen = ScanObservation()
@@ -160,11 +160,12 @@ def main():
     add_options(parser, environments=192, cases=100)
     options = parser.parse_args()
     torch.set_num_threads(1)  # small networks: more threads only wait for each other
-    trials = parse_trials(options.trials)
-    envs = ScanEnvs(trials, options.environments)
-    model = make_model(envs, max(2, min(64, options.steps // envs.num_envs)), options.seed)
-    train(model, options, trials, OutcomeTable(updates=5 if model.n_steps == 64 else 1), network_weights)
-    envs.close()
+    trials = parse_trials(options.trials, options.crowd)
+    for one in trainings(options, trials, ScanPolicyWeights):
+        envs = ScanEnvs(trials, one.environments)
+        model = make_model(envs, max(2, min(64, one.steps // envs.num_envs)), one.seed)
+        train(model, one, trials, OutcomeTable(updates=5 if model.n_steps == 64 else 1), network_weights)
+        envs.close()
 
 
 if __name__ == "__main__":

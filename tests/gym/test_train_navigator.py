@@ -112,3 +112,26 @@ def test_a_short_training_writes_weights_that_the_navigator_reads(
     changes = {"robot/navigator/type": kind.navigator, "robot/navigator/file": str(file), "duration": 2.0}
     assert run(load_trial("crowdnav-circle-5", changes), seed=1).steps > 0
     assert (tmp_path / "mine" / "model.zip").is_file()
+
+
+@pytest.mark.program
+def test_trainings_with_several_seeds_continue_where_they_ended(tmp_path: Path) -> None:
+    words = ["--trials", "crowdnav-circle-5 people=2", "--crowd", "social-force", "--environments", 8, "--cases", 0]
+    first = run_program(EXAMPLE, *words, "--steps", 64, "--seed", "0:2", "--out", "mine", cwd=tmp_path)
+    assert first.returncode == 0, first.stderr
+    files = [tmp_path / "mine" / f"seed-{seed}" / "policy.npz" for seed in (0, 1)]
+    cards = [PolicyWeights.read(file)[1] for file in files]
+    assert [(card["seed"], card["trials"]) for card in cards] == [
+        (seed, ["crowdnav-circle-5 people=2 crowd/type=social-force"]) for seed in (0, 1)
+    ]
+    weights, card = PolicyWeights.read(files[1])
+    weights.save(files[1], card | {"steps": 8})  # as after Ctrl-C
+    kept = files[0].read_bytes()
+    again = run_program(EXAMPLE, *words, "--steps", 64, "--seed", "0:2", "--out", "mine", cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.splitlines()[0] == f"{Path('mine', 'seed-0', 'policy.npz')} is there with all its steps"
+    assert files[0].read_bytes() == kept
+    assert PolicyWeights.read(files[1])[1]["steps"] == 64
+    wrong = run_program(EXAMPLE, "--seed", "3-1", cwd=tmp_path)
+    assert wrong.returncode == 2
+    assert "must be a seed such as 7" in wrong.stderr
