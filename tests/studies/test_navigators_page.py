@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+import shutil
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+from crowdbot.navigation import policy_file
 
 TOOL = Path(__file__).parents[2] / "studies" / "navigators.py"
 
@@ -40,7 +43,7 @@ def test_other_trials_come_behind_the_rows_that_are_kept(tool: ModuleType, monke
     text = tool.PAGE.read_text(encoding="utf-8")
     monkeypatch.setattr(tool, "others", lambda: ["frontal", "leading"])
     monkeypatch.setattr(tool, "SLOW_OTHERS", ["social-force"])
-    words = ["--only-others", "--others", "2", "--slow-others", "1", "--parts", "parts"]
+    words = ["--only", "others", "--others", "2", "--slow-others", "1", "--parts", "parts"]
     tool.main([*words, "--minutes", "-1"])
     assert tool.PAGE.read_text(encoding="utf-8") == text
     tool.main(words)
@@ -67,7 +70,7 @@ def test_rows_of_the_page_are_not_run_again(
     _without_others(tool)
     monkeypatch.setattr(tool, "others", lambda: ["frontal"])
     monkeypatch.setattr(tool, "SLOW_OTHERS", [])
-    words = ["--keep", "--only-others", "--others", "1", "--parts", "parts"]
+    words = ["--keep", "--only", "others", "--others", "1", "--parts", "parts"]
     tool.main(words)
     page = tool.PAGE.read_text(encoding="utf-8")
     assert "| `frontal` | straight | " in page.split(tool.OTHERS)[1]
@@ -80,7 +83,57 @@ def test_rows_of_the_page_are_not_run_again(
 def test_an_incomplete_page_has_the_rows_that_are_there(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tool, "others", lambda: ["frontal"])
     kept = _without_others(tool)
-    tool.main(["--only-others", "--others", "1", "--minutes", "-1", "--incomplete"])
+    tool.main(["--only", "others", "--others", "1", "--minutes", "-1", "--incomplete"])
     assert tool.PAGE.read_text(encoding="utf-8") == tool.page_text(kept)
     with pytest.raises(SystemExit):
-        tool.parse_options(["--only-others"])
+        tool.parse_options(["--only", "others"])
+
+
+def test_the_table_of_crowds_has_crowds_perception_and_trainings(
+    tool: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(tool, "CROWDED", ("circle-crossing people=1",))
+    monkeypatch.setattr(tool, "CROWDS", ("social-force",))
+    monkeypatch.setattr(tool, "ALL", ["policy"])
+    for seed in (0, 1):
+        (tmp_path / "weights" / f"seed-{seed}").mkdir(parents=True)
+        shutil.copy(policy_file("policy"), tmp_path / "weights" / f"seed-{seed}")
+    words = ["--only", "crowds", "--crowds", "1", "--weights", "weights"]
+    rows = tool.rows_of(tool.parse_options(words))
+    variants = [row.variant() for row in rows]
+    assert [len(row.files) for row in rows] == [0, 0, 2, 2]
+    assert [type(trial.crowd).__name__ for trial in variants] == ["SocialForce"] * 4
+    assert [trial.robots[0].people for trial in variants] == ["true", "tracked"] * 2
+    before = tool.lines_of_page(tool.PAGE.read_text(encoding="utf-8"))
+    tool.main(words)
+    page = tool.PAGE.read_text(encoding="utf-8")
+    lines = tool.lines_of_page(page)
+    assert {key: lines[key] for key in before} == before
+    assert tool.page_text(lines) == page
+    found = {key[2:]: text.strip("| ").split(" | ")[4:] for key, text in lines.items() if key[0] == "crowds"}
+    assert len(found) == 4
+    one, many = (found["social-force", "tracked", name] for name in ("`policy`", "`policy`, 2 trainings"))
+    assert (one[0], many[0], len(one), len(many)) == ("1", "2", 7, 7)
+    assert many[1] == f"{one[1].split()[0]} ± 0"
+    section = page.split(tool.COMBINED)[1].split(tool.OTHERS)[0]
+    assert "| navigator | social-force, true | social-force, tracked |" in section
+    assert f"| `policy`, 2 trainings | {float(one[1].split()[0]):.2f} / " in section
+    capsys.readouterr()
+    tool.main(words)
+    assert tool.PAGE.read_text(encoding="utf-8") == page  # nothing ran again, also not the measured times
+    with pytest.raises(SystemExit):
+        tool.parse_options(["--only", "crowds"])
+    assert "--only crowds needs the number of seeds of this table, such as --crowds 10" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        tool.parse_options([*words[:4], "--weights", "none"])
+    assert "--weights none has no trainings" in capsys.readouterr().err
+
+
+def test_means_over_trials_need_all_of_them(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tool, "CROWDED", ("block", "doorway"))
+    text = "| `block` | orca | true | `mpc` | 10 | 0.5 [0.2, 0.8] | 0.1 [0, 0.3] | 0.4 [0.1, 0.7] | 9 | 0 | 2 |"
+    lines = {("crowds", "block", "orca", "true", "`mpc`"): text}
+    columns = 2 * len(tool.CROWDS)
+    assert tool.summary(lines).splitlines()[-1] == f"| `mpc` | {' | '.join('-' * columns)} |"
+    lines["crowds", "doorway", "orca", "true", "`mpc`"] = text.replace("0.5 [", "1 [")
+    assert tool.summary(lines).splitlines()[-1].split(" | ")[3] == "0.75 / 0.10"
