@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 import functools
-import hashlib
 import math
 import sys
 import time
@@ -250,9 +249,8 @@ def cell(row: Row, file: Path | None, trial: Trial, seeds: range, parts: Path) -
     """Return the runs of the navigator of a row, or of its weights in a file, in a trial."""
     families = ("task", "severity") if row.table == "crowds" else tuple(LOG_FAMILIES)
     (method,) = parse_methods(row.method if file is None else f"{row.method} file={file}")
-    digest = "" if file is None else f"-{hashlib.blake2b(file.read_bytes(), digest_size=6).hexdigest()}"
     plan = EvaluationPlan([trial], [method], seeds=seeds, families=families)
-    return evaluate(plan, parts / f"{row.trial}-{row.method}{digest}".replace(" ", "_")).cells[0]
+    return evaluate(plan, parts / f"{row.trial}-{row.method}".replace(" ", "_")).cells[0]
 
 
 def compute(rows: list[Row], options: argparse.Namespace) -> dict[Row, Found]:

@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterable
 from crowdbot.core import InputError, did_you_mean
 
 from .comfort import comfort_metrics, conflict_metrics, force_metrics
-from .gestures import gesture_metrics
 from .group_intrusion import group_metrics
 from .path_quality import legibility_metrics, motion_metrics, path_metrics
 from .robot_log import RobotLog
 from .severity import severity_metrics
 from .surroundings import density_metrics, person_metrics
-from .task import task_metrics
+from .task import gesture_metrics, task_metrics
 
 LOG_FAMILIES: dict[str, Callable[[RobotLog], dict[str, float]]] = {
     "task": task_metrics,
