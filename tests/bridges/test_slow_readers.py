@@ -61,7 +61,8 @@ def test_a_small_message_does_not_wait_for_the_receipt_of_the_one_before(kind):
     ):
         wait(lambda: accepted(client))
         (connection,) = accepted(client)
-        wait(lambda: connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+        wait(lambda: connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))  # set after the connection
+        assert connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
 
 
 def accepted(client):
