@@ -109,6 +109,12 @@ def test_jupedsim_walks_in_the_same_run() -> None:
     assert report.million is None
 
 
+@pytest.mark.parametrize(("count", "expected"), [(1, (1,)), (2, (1, 2)), (8, (1, 2))])
+def test_no_row_has_more_threads_than_kernels(count: int, expected: tuple[int, ...], monkeypatch) -> None:
+    monkeypatch.setattr("numba.config.NUMBA_NUM_THREADS", count)
+    assert JuPedSimPeer().threads() == expected
+
+
 def test_people_of_jupedsim_move() -> None:
     scene = crowd(30)
     step = JuPedSimPeer().step(scene)

@@ -94,7 +94,19 @@ def test_nothing_leaves_before_the_first_pose():
     guard.next_command(0.0)
     guard.note_command(Twist(0.4), 0.1)
     assert guard.next_command(0.1) == Twist()
-    assert guard.reason == "no pose of the robot has come"
+    assert (guard.waits, guard.reason) == (True, "")
+
+
+def test_after_a_late_first_pose_the_robot_drives():
+    guard = CommandGuard(FIELD)
+    for k in range(10):
+        guard.note_command(Twist(0.4), 0.1 * k)
+        assert guard.next_command(0.1 * k) == Twist()
+    guard.note_pose(0.0, 0.0, 0.0, 1.0)
+    assert guard.waits is False
+    guard.note_command(Twist(0.4), 1.0)
+    assert guard.next_command(1.0).forward == pytest.approx(0.05)  # 0.5 m/s2 for 0.1 s
+    assert guard.stops == []
 
 
 @pytest.mark.parametrize(
@@ -130,6 +142,21 @@ def test_messages_and_keys_stop_and_release():
         port.inbox.receive("/odom", {"twist": {}}, "test")
     with pytest.raises(InputError, match="must be a finite number"):
         port.inbox.receive("/odom", {"pose": {"pose": {"position": {"x": math.nan}}}}, "test")
+
+
+def test_a_robot_that_waits_for_its_first_pose_says_so():
+    notes = []
+    trial = load_trial("frontal", duration=0.5)
+    port = JoinRun(trial, [MemoryTransport()], CommandGuard(FIELD), note=notes.append).port
+    port.send_command(0)
+    assert notes == []
+    port.want(Twist(0.4))
+    port.send_command(0)
+    port.send_command(0)
+    assert notes == ["robot 'robot' stands: no pose has come on /odom yet"]
+    port.inbox.receive("/odom", {"pose": {"pose": {"position": {"x": 3.0}}}}, "test")
+    port.send_command(0)
+    assert notes[1:] == ["the robot may drive"]
 
 
 def start_robot(*words):

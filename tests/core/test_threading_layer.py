@@ -1,10 +1,12 @@
 """Parallel kernels after a fork, from several Python threads, and both, on every threading layer."""
 
+import ctypes
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 
 from crowdbot.core import threading_layer
@@ -14,7 +16,9 @@ PROGRAM = Path(__file__).with_name("parallel_work.py")
 STEPS = ["work", "fork", "threads", "fork-threads"]
 RESTING = ["work", "fork-during", "fork-from-thread"]
 """Steps in which a fork waits until the threads of the layer sleep."""
-LAYERS = ["tbb", "workqueue"]
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+LAYERS = ["tbb", "workqueue"] if CORES > 1 else ["workqueue"]
+"""Layers that may run: oneTBB has no threads of its own on one core."""
 
 NESTED = """
 import numpy as np
@@ -99,8 +103,22 @@ def test_every_layer_and_number_of_threads_gives_the_same_bytes():
 @pytest.mark.program
 def test_tbb_is_found_in_its_wheel_and_gives_the_bytes_of_one_thread():
     found = results("work", "layer")
-    assert found["layer"] == ["tbb"]
+    assert found["layer"] == [LAYERS[0]]
     assert found["work"] == results("work", NUMBA_THREADING_LAYER="workqueue", NUMBA_NUM_THREADS="1")["work"]
+
+
+@pytest.mark.program
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="this system does not bind a process to cores")
+def test_on_one_core_a_program_that_begins_in_another_thread_ends(tmp_path):
+    program = tmp_path / "on_one_core.py"
+    program.write_text(
+        "import os, runpy\n"
+        "os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\n"
+        f"runpy.run_path({str(PROGRAM)!r}, run_name='__main__')\n"
+    )
+    found = [line.split()[1:] for line in run(program, "threads", "fork", "layer").splitlines()]
+    assert found[2] == ["layer", "workqueue"]
+    assert found[0][1] == found[1][1]
 
 
 @pytest.mark.program
@@ -147,7 +165,8 @@ def test_an_order_of_layers_given_by_the_user_stays(given, tmp_path):
         "print(*numba.config.THREADING_LAYER_PRIORITY)"
     )
     settings = {} if given is None else {"NUMBA_THREADING_LAYER_PRIORITY": given}
-    assert run(program, **settings).strip() == (given or "tbb workqueue omp")
+    chosen = "tbb workqueue omp" if CORES > 1 else "workqueue tbb omp"
+    assert run(program, **settings).strip() == (given or chosen)
 
 
 def test_a_library_that_does_not_load_is_left_out(monkeypatch, tmp_path):
@@ -165,6 +184,11 @@ def test_a_library_that_does_not_load_is_left_out(monkeypatch, tmp_path):
     monkeypatch.setattr("importlib.metadata.files", lambda name: [File()])
     threading_layer.prefer_safe_layers()
     assert tried == [broken.name]
+
+
+def test_a_library_without_the_function_leaves_the_count_of_numba():
+    assert threading_layer._allowed_threads(None) == numba.config.NUMBA_DEFAULT_NUM_THREADS
+    assert threading_layer._allowed_threads(ctypes.CDLL(None)) == numba.config.NUMBA_DEFAULT_NUM_THREADS
 
 
 @pytest.mark.live

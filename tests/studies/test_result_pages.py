@@ -62,7 +62,7 @@ def test_the_page_of_engines_has_its_rows_and_the_command(tmp_path):
     row = EngineRow("orca", "RVO2", 1000, "sorted", 1, 0.1, 2.0, 3.0, 1.5, 1.4, 1.6)
     million = MillionRow("orca", 1_000_000, 1.5, 900.0)
     words = {"RVO2": "the same model"}
-    report = EngineReport("a machine", (None, None), EngineSizes(2), {"pyrvo": "0.4"}, words, {}, (row,), million)
+    report = EngineReport("a machine", (None, None), EngineSizes(2), 2, {"pyrvo": "0.4"}, words, {}, (row,), million)
     engines.write_engines_page(report, tmp_path / "page.md", "python studies/engines.py --page engines.md")
     page = (tmp_path / "page.md").read_text(encoding="utf-8")
     assert "```\npython studies/engines.py --page engines.md\n```" in page

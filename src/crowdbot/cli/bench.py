@@ -156,6 +156,8 @@ def _print_engines(found: EngineReport) -> None:
     ]  # fmt: skip
     head = ("model", "engine", "people", "order", "threads", "ms", "engine ms", "ratio", "10 to 90 %")
     print_table("engines: time of a step", head, cells, caption=found.machine, words=2)
+    if found.threads == 1:
+        print("Our kernels have one thread here: rows with two are left out.")
     for engine, protocol in found.protocols.items():
         print(f"{engine}: {protocol}")
     if found.million is not None:

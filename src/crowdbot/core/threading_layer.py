@@ -2,8 +2,9 @@
 
 GNU OpenMP, the default of numba on Linux, hangs in a child process that is forked after the first parallel kernel. The
 ``workqueue`` layer supports forks but aborts if two Python threads enter it. oneTBB supports both and is preferred
-where its wheel exists; otherwise ``workqueue`` runs behind a lock. The environment variable ``NUMBA_THREADING_LAYER``
-overrides this choice.
+where its wheel exists; otherwise ``workqueue`` runs behind a lock. So it does on one core: oneTBB has no threads of its
+own there, and a program whose first kernel ran in another thread than the main one would wait at its end for a task
+that no thread takes. The environment variable ``NUMBA_THREADING_LAYER`` overrides this choice.
 """
 
 from __future__ import annotations
@@ -21,6 +22,10 @@ from numba.core import compiler_lock, config
 from numba.np.ufunc import parallel
 
 LIBRARY = {"win32": "tbb12.dll", "darwin": "libtbb.12.dylib"}.get(sys.platform, "libtbb.so.12")
+ACTIVE_VALUE = {"win32": "?global_control_active_value@r1@detail@tbb@@YA_KH@Z"}.get(
+    sys.platform, "_ZN3tbb6detail2r127global_control_active_valueEi"
+)
+"""Exported name of a function of oneTBB: the value of a global limit, of which 0 is the number of threads."""
 PATIENCE = 10.0
 """Maximum time [s] that a fork waits for kernels in other threads."""
 
@@ -28,6 +33,9 @@ REST = 0.05
 """Time [s] in which idle threads of oneTBB fall asleep."""
 
 _entry = threading.RLock()
+"""Held for a moment when a call begins, and during a fork: calls that follow each other do not keep a fork waiting."""
+_alone = threading.RLock()
+"""Held by the one call that runs on a layer that does not support several Python threads."""
 _compiling: Any = compiler_lock.global_compiler_lock
 _layer: Any = parallel.threading_layer
 _running: set[object] = set()
@@ -36,25 +44,40 @@ _callers: set[int] = set()
 
 
 def prefer_safe_layers() -> None:
-    """Make numba try oneTBB first, then ``workqueue``, and let it find the library of the ``tbb`` wheel."""
+    """Make numba try oneTBB first, then ``workqueue``, and let it find the library of the ``tbb`` wheel.
+
+    On one core, ``workqueue`` comes first.
+    """
     settings: Any = config
+    library = _load_tbb()
     if "NUMBA_THREADING_LAYER_PRIORITY" not in os.environ:
-        settings.THREADING_LAYER_PRIORITY = ["tbb", "workqueue", "omp"]
-    _load_tbb()
+        several = _allowed_threads(library) > 1
+        settings.THREADING_LAYER_PRIORITY = [*(("tbb", "workqueue") if several else ("workqueue", "tbb")), "omp"]
 
 
-def _load_tbb() -> None:
+def _load_tbb() -> ctypes.CDLL | None:
     """Load the library of the ``tbb`` wheel, which is outside of the search path; numba then finds it by name."""
     try:
         files = importlib.metadata.files("tbb") or []
     except importlib.metadata.PackageNotFoundError:
-        return
+        return None
     for file in files:
         if file.name.lower() == LIBRARY:
             try:
-                ctypes.CDLL(os.fspath(file.locate().resolve()))  # type: ignore[attr-defined]
+                return ctypes.CDLL(os.fspath(file.locate().resolve()))  # type: ignore[attr-defined]
             except OSError:  # built for another system: numba uses the next layer
-                return
+                return None
+    return None
+
+
+def _allowed_threads(library: ctypes.CDLL | None) -> int:
+    """Return how many threads oneTBB has, which knows the limits of a container, or how many cores numba sees."""
+    try:
+        allowed = library[ACTIVE_VALUE]  # type: ignore[index]
+    except (AttributeError, TypeError):  # another release, or none
+        return int(config.NUMBA_DEFAULT_NUM_THREADS)  # type: ignore[attr-defined]
+    allowed.restype = ctypes.c_size_t
+    return int(allowed(0))
 
 
 def guard(compiled: Callable[..., Any]) -> Callable[..., Any]:
@@ -66,15 +89,15 @@ def guard(compiled: Callable[..., Any]) -> Callable[..., Any]:
         return compiled
 
     def run(*arguments: Any) -> Any:
-        if not _is_thread_safe():
-            with _entry:
-                return compiled(*arguments)
         call = object()
         with _entry:  # waits while another thread forks
             _running.add(call)
             _callers.add(threading.get_ident())
         try:
-            return compiled(*arguments)
+            if _is_thread_safe():
+                return compiled(*arguments)
+            with _alone:
+                return compiled(*arguments)
         finally:
             _running.discard(call)
 
@@ -109,6 +132,8 @@ def _after_fork_in_parent() -> None:
 
 
 def _after_fork_in_child() -> None:
+    global _alone  # noqa: PLW0603
+    _alone = threading.RLock()  # a thread that the child does not have may hold the other one
     _running.clear()
     _callers.clear()
     _after_fork_in_parent()

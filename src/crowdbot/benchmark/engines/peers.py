@@ -10,7 +10,6 @@ import contextlib
 import ctypes
 import hashlib
 import logging
-import os
 import shutil
 import subprocess
 import tempfile
@@ -25,6 +24,13 @@ import numpy as np
 from crowdbot.benchmark.speed.reference_engines import jupedsim_step
 from crowdbot.core import InputError, Scene, cache_root, import_optional
 from crowdbot.models import ORCA, CollisionFreeSpeed, GroupForce
+
+
+def most_kernel_threads() -> int:
+    """Return the largest number of threads of our kernels: the cores that this process may use, or a setting."""
+    import numba
+
+    return int(numba.config.NUMBA_NUM_THREADS)  # type: ignore[attr-defined]
 
 
 class EnginePeer(ABC):
@@ -109,8 +115,8 @@ class Rvo2Peer(EnginePeer):
         return ORCA(neighbor_distance=REACH, max_neighbors=float(MOST), time_horizon=HORIZON)
 
     def threads(self) -> tuple[int, ...]:
-        # 1, and 2 with the compiled library where the machine has two cores
-        return (1, 2) if self.library is not None and (os.cpu_count() or 1) > 1 else (1,)
+        # 1, and 2 with the compiled library where our kernels have two
+        return (1, 2) if self.library is not None and most_kernel_threads() > 1 else (1,)
 
     def describe(self) -> str:
         return f"RVO2 from source, g++ {' '.join(FLAGS)}" if self.library is not None else "RVO2 of the package pyrvo"
@@ -208,7 +214,7 @@ class JuPedSimPeer(EnginePeer):
 
     def threads(self) -> tuple[int, ...]:
         # 1 and 2: JuPedSim has one thread, ours can have more
-        return (1, 2) if (os.cpu_count() or 1) > 1 else (1,)
+        return (1, 2) if most_kernel_threads() > 1 else (1,)
 
     @property
     def model(self) -> CollisionFreeSpeed:

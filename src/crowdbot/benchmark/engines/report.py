@@ -19,7 +19,7 @@ from crowdbot.benchmark.speed.timing import environment, load_average
 from crowdbot.benchmark.speed.workloads import crowd
 from crowdbot.core import InputError, MissingExtra, Scene, kebab_case
 
-from .peers import EnginePeer, JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer, Rvo2Peer
+from .peers import EnginePeer, JuPedSimPeer, NavgroundOrcaPeer, PySocialForcePeer, Rvo2Peer, most_kernel_threads
 
 Start = Callable[[], Callable[[], object]]
 """Makes an engine at the start, and returns the function that makes one step of it."""
@@ -155,6 +155,7 @@ class EngineReport:
         machine: processor, system and versions.
         load: load averages over one minute before and after, None where the system has none.
         sizes: sizes of the measurement.
+        threads: largest number of threads of our kernels; rows with more are left out.
         versions: versions of the engines by package.
         protocols: what is compared, by engine.
         missing: for each engine that is not installed, how to install it.
@@ -165,6 +166,7 @@ class EngineReport:
     machine: str
     load: tuple[float | None, float | None]
     sizes: EngineSizes
+    threads: int
     versions: dict[str, str]
     protocols: dict[str, str]
     missing: dict[str, str]
@@ -213,8 +215,9 @@ def measure_engines(
     versions = {package: version(package) for peer in peers for package in peer.packages}
     protocols = {peer.describe(): peer.protocol for peer in peers}
     return EngineReport(
-        environment(), (before, load_average()), sizes, versions, protocols, missing, tuple(rows), million
-    )
+        environment(), (before, load_average()), sizes, most_kernel_threads(), versions, protocols, missing,
+        tuple(rows), million,
+    )  # fmt: skip
 
 
 def _tasks(peer: EnginePeer, sizes: EngineSizes) -> Iterator[tuple[int, str, int]]:

@@ -75,7 +75,7 @@ class CommandGuard:
 
     An emergency stop is immediate and lasts until :meth:`release`: a key or message, no pose for ``limits.link``, or a
     robot that is outside its area or would not come to rest inside. Without commands, the robot stops with its
-    acceleration limit and drives on with the next one.
+    acceleration limit and drives on with the next one. Until its first pose has come, the robot stands.
 
     Fields:
         area: where the robot may be.
@@ -115,6 +115,11 @@ class CommandGuard:
         """Whether a pose has come."""
         return self._pose is not None
 
+    @property
+    def waits(self) -> bool:
+        """Whether the robot has a command and stands only because no pose has come."""
+        return not self.reason and self._pose is None and any(self._wanted)
+
     def note_command(self, twist: Twist, now: float) -> None:
         """Take a wanted velocity.
 
@@ -141,7 +146,7 @@ class CommandGuard:
     def next_command(self, now: float) -> Twist:
         """Return the velocity that may leave now."""
         step = 0.0 if self._sent_time is None else max(0.0, now - self._sent_time)
-        twist = Twist() if self.reason else self._limited(now, step)
+        twist = Twist() if self.reason or self._pose is None else self._limited(now, step)
         if not self.reason and (problem := self._danger(now, twist)):
             self.stop(problem)
             twist = Twist()
@@ -163,7 +168,7 @@ class CommandGuard:
     def _danger(self, now: float, twist: Twist) -> str:
         """Return why the robot must stop, or an empty text."""
         if self._pose is None:
-            return "no pose of the robot has come" if any(twist) else ""
+            return ""
         if now - self._pose_time > self.limits.link:
             return f"the link is lost: no pose of the robot for {self.limits.link:g} s"
         x, y, heading = self._pose

@@ -240,9 +240,12 @@ class JoinPort(BridgePort):
         angular = self._make.make("geometry_msgs/msg/Vector3", x=0.0, y=0.0, z=twist.turn)
         message = self._make.make(TWIST, linear=linear, angular=angular)
         self._send([StepMessage(self.command, TWIST, nanoseconds, self._make, message)])
-        if self.guard.reason != self._told:
-            self._told = self.guard.reason
-            text = f"robot {self.robot.name!r} is stopped: {self._told}" if self._told else "the robot may drive"
+        problem = f"is stopped: {self.guard.reason}" if self.guard.reason else ""
+        if self.guard.waits:
+            problem = f"stands: no pose has come on {self.odometry or 'its motion capture'} yet"
+        if problem != self._told:
+            self._told = problem
+            text = f"robot {self.robot.name!r} {problem}" if problem else "the robot may drive"
             self.report("warning", text)
             self.note(text)
 
