@@ -1,7 +1,7 @@
 """Write docs/results/navigators.md: navigators in the trials of CrowdNav and in the other built-in trials.
 
     python studies/navigators.py --seeds 500 --slow-seeds 100 --severity-seeds 500 --others 10 --parts parts
-    python studies/navigators.py --only crowds --crowds 30 --weights weights --workers 2 --parts parts
+    python studies/navigators.py --only crowds --crowds 12 --weights weights --workers 2 --parts parts
 
 ``--parts`` is a folder of finished parts, with which the same command continues after an interruption (Ctrl-C, or a
 kill). ``--workers`` is the number of processes. Each line on the terminal is a finished row, with the share of the rows
@@ -89,13 +89,25 @@ stand [above](#published-results). Missing rows have not been run.
 ```
 python examples/train_navigator.py --network attention --environments 416 --steps 1000000 \\
     --seed 0:5 --cases 0 --out weights
-python studies/navigators.py --only crowds --crowds 30 --weights weights --workers 2 --parts parts
+python studies/navigators.py --only crowds --crowds 12 --weights weights --workers 2 --parts parts
 ```
 
 What it does not show. All people are simulated, and no navigator is tuned to a trial, so the order may be another one
 among real people or after tuning. Each trial has one robot, so nothing is said about other bodies, drives, scanners or
 speeds. Rates of a few seeds have wide intervals, and since the rows of a trial share their seeds, two intervals that
 overlap do not say that two navigators are equal."""
+SHOWN = """What it shows.
+
+* `mppi`, `mpc` and `attention-policy` succeed most: in 0.82 to 0.96 of the runs among people of `people` and `orca`,
+  known or tracked. Among people of `social-force` no navigator exceeds 0.65, and most collide in a fifth of the runs or
+  more: a verdict on a robot holds for one crowd.
+* Tracking costs success. In the mean over the twelve rows whose robots know people, 0.70 becomes 0.66 with `people`,
+  0.73 becomes 0.64 with `orca`, and 0.48 becomes 0.33 with `social-force`.
+* Few collisions do not mean that a robot arrives: `social-force` and `policy` collide least, in 0.08 of all runs, and
+  arrive in 0.62 and 0.35.
+* One training says little about a method. In the mean over all columns, the weights of `attention-policy` in the
+  package succeed in 0.78 of the runs and five trainings by the same command in 0.66; in `doorway` with `orca`, three of
+  these always pass the door and two never do."""
 MEANS = """Success / collisions by crowd and what the robot knows of people, means over the six trials (`-`: not all of
 them have been run):"""
 OTHERS = "## Other built-in trials"
@@ -369,7 +381,8 @@ def page_text(lines: Lines) -> str:
         if table.name == "others":
             text = f"\n{OTHERS}\n\n{ABOUT}\n\n{text}" if has_rows else ""
         if table.name == "crowds":
-            text = f"\n{COMBINED}\n\n{ABOUT_COMBINED}\n\n{MEANS}\n\n{summary(lines)}\n{text}" if has_rows else ""
+            parts = (COMBINED, ABOUT_COMBINED, MEANS, summary(lines).rstrip("\n"), SHOWN, text)
+            text = "\n" + "\n\n".join(parts) if has_rows else ""
         page = page.replace(f"{{{table.name}}}\n", text)
     return page
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import shutil
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
 from crowdbot.navigation import policy_file
@@ -39,7 +41,7 @@ def test_the_page_is_what_the_tool_writes_from_its_rows(tool: ModuleType) -> Non
 
 
 def test_other_trials_come_behind_the_rows_that_are_kept(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    kept = _without_others(tool)
+    kept = _without(tool, "others")
     text = tool.PAGE.read_text(encoding="utf-8")
     monkeypatch.setattr(tool, "others", lambda: ["frontal", "leading"])
     monkeypatch.setattr(tool, "SLOW_OTHERS", ["social-force"])
@@ -56,10 +58,10 @@ def test_other_trials_come_behind_the_rows_that_are_kept(tool: ModuleType, monke
     assert found == [[f"| `{trial}`", *row] for trial in ("frontal", "leading") for row in rows]
 
 
-def _without_others(tool: ModuleType) -> dict[tuple[str, str, str], str]:
-    """Return the rows of the page without those of the other trials, and write it so."""
+def _without(tool: ModuleType, table: str) -> dict[tuple[str, ...], str]:
+    """Return the rows of the page without those of a table, and write it so."""
     rows = tool.lines_of_page(tool.PAGE.read_text(encoding="utf-8")).items()
-    kept = {key: line for key, line in rows if key[0] != "others"}
+    kept = {key: line for key, line in rows if key[0] != table}
     tool.PAGE.write_text(tool.page_text(kept), encoding="utf-8")
     return kept
 
@@ -67,7 +69,7 @@ def _without_others(tool: ModuleType) -> dict[tuple[str, str, str], str]:
 def test_rows_of_the_page_are_not_run_again(
     tool: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    _without_others(tool)
+    _without(tool, "others")
     monkeypatch.setattr(tool, "others", lambda: ["frontal"])
     monkeypatch.setattr(tool, "SLOW_OTHERS", [])
     words = ["--keep", "--only", "others", "--others", "1", "--parts", "parts"]
@@ -82,7 +84,7 @@ def test_rows_of_the_page_are_not_run_again(
 
 def test_an_incomplete_page_has_the_rows_that_are_there(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tool, "others", lambda: ["frontal"])
-    kept = _without_others(tool)
+    kept = _without(tool, "others")
     tool.main(["--only", "others", "--others", "1", "--minutes", "-1", "--incomplete"])
     assert tool.PAGE.read_text(encoding="utf-8") == tool.page_text(kept)
     with pytest.raises(SystemExit):
@@ -104,7 +106,7 @@ def test_the_table_of_crowds_has_crowds_perception_and_trainings(
     assert [len(row.files) for row in rows] == [0, 0, 2, 2]
     assert [type(trial.crowd).__name__ for trial in variants] == ["SocialForce"] * 4
     assert [trial.robots[0].people for trial in variants] == ["true", "tracked"] * 2
-    before = tool.lines_of_page(tool.PAGE.read_text(encoding="utf-8"))
+    before = _without(tool, "crowds")
     tool.main(words)
     page = tool.PAGE.read_text(encoding="utf-8")
     lines = tool.lines_of_page(page)
@@ -127,6 +129,30 @@ def test_the_table_of_crowds_has_crowds_perception_and_trainings(
     with pytest.raises(SystemExit):
         tool.parse_options([*words[:4], "--weights", "none"])
     assert "--weights none has no trainings" in capsys.readouterr().err
+
+
+def test_what_the_table_of_crowds_shows_is_in_its_means(tool: ModuleType) -> None:
+    rows = [text.strip("| ").split(" | ") for text in tool.summary(_lines(tool)).splitlines()[2:]]
+    means = {name: np.array([[float(word) for word in cell.split(" / ")] for cell in cells]) for name, *cells in rows}
+    knows = np.mean([value for name, value in means.items() if name != "straight" and "scan" not in name], axis=0)[:, 0]
+    best = np.stack([means[f"`{name}`"][:4, 0] for name in ("mppi", "mpc", "attention-policy")])
+    whole = {name: value.mean(axis=0) for name, value in means.items()}
+    numbers = [
+        *(best.min(), best.max(), max(value[4:, 0].max() for value in means.values())),
+        *knows,
+        *(whole["`social-force`"][1], whole["`social-force`"][0], whole["`policy`"][0]),
+        *(whole["`attention-policy`"][0], whole["`attention-policy`, 5 trainings"][0]),
+    ]
+    told = re.findall(r"0\.\d\d", tool.SHOWN)
+    assert len(told) == len(numbers)
+    for number, text in zip(numbers, told, strict=True):
+        assert float(text) == pytest.approx(number, abs=0.006)
+    assert " 0.6 ± 0.55 " in _lines(tool)["crowds", "doorway", "orca", "true", "`attention-policy`, 5 trainings"]
+
+
+def _lines(tool: ModuleType) -> dict[tuple[str, ...], str]:
+    found: dict[tuple[str, ...], str] = tool.lines_of_page(tool.PAGE.read_text(encoding="utf-8"))
+    return found
 
 
 def test_means_over_trials_need_all_of_them(tool: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
