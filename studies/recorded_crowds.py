@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import CrowdbotError, InputError
-from crowdbot.evaluation import EvaluationPlan, bootstrap_estimate, evaluate, parse_methods
+from crowdbot.evaluation import Estimate, EvaluationPlan, bootstrap_estimate, evaluate, parse_methods
 from crowdbot.trials import Trial, recorded_trial
 from crowdbot.typing import Floats
 
@@ -86,8 +86,14 @@ def row(name: str, mode: str, first: Floats, second: Floats) -> str:
     known = np.isfinite(first) & np.isfinite(second)
     gap = np.where(known, second - first, 0.0).sum(axis=0)
     count = known.sum(axis=0)
-    gaps = [bootstrap_estimate(gap[m, count[m] > 0] / count[m, count[m] > 0]) for m in range(len(METRICS))]
-    return f"| {name} | {mode} | {first.shape[2]} | {' | '.join([*shares, *map(str, gaps)])} |"
+    gaps = [str(_rounded(gap[m, count[m] > 0] / count[m, count[m] > 0])) for m in range(len(METRICS))]
+    return f"| {name} | {mode} | {first.shape[2]} | {' | '.join([*shares, *gaps])} |"
+
+
+def _rounded(differences: Floats) -> Estimate:
+    """Return their mean with its interval, without what the sum of shares leaves instead of 0."""
+    found = bootstrap_estimate(differences)
+    return found._replace(value=round(found.value, 9) + 0.0, low=round(found.low, 9), high=round(found.high, 9))
 
 
 def print_table(recordings: Sequence[Path], weights: Sequence[Path], people: int) -> None:

@@ -55,6 +55,14 @@ def test_differences_are_those_of_the_same_cases() -> None:
     assert [float(word.split()[0]) for word in half[3:]] == [0.625, 0.75, 0.125, -0.25, pytest.approx(-0.5)]
 
 
+def test_differences_of_several_trainings_that_cancel_out_are_0() -> None:
+    first = np.zeros((10, 3, 3))
+    second = first.copy()
+    second[:6, 0, 0], second[:4, 0, 1], second[:2, 0, 2] = 1.0, -1.0, -1.0  # 0.6 - 0.4 - 0.2 leaves 5.6e-17
+    words = recorded_crowds.row("hall", "replayed", first, second).strip("| ").split(" | ")
+    assert words[5].startswith("0 [")
+
+
 def test_equal_weights_do_not_differ(
     recording: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
